@@ -283,7 +283,7 @@ pub fn is_unfinished(path: &Path, meant: impl Fn(&str) -> bool) -> bool {
     !process.is_empty() && process.bytes().all(|c| c.is_ascii_digit()) && meant(whole)
 }
 
-/// Returns the suffix of the incomplete files of this process.
+/// Returns the suffix that this process gives to the names of incomplete files.
 pub fn unfinished() -> String {
     format!(".{}.part", std::process::id())
 }

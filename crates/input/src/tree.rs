@@ -120,7 +120,7 @@ impl Table {
 /// A source file.
 #[derive(Debug, Clone)]
 pub struct SourceFile {
-    /// Name of the file in errors.
+    /// File name that error messages show.
     pub name: String,
     /// Content of the file.
     pub text: String,

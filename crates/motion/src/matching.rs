@@ -278,8 +278,8 @@ pub(crate) struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    /// Creates the data of a match for a motion with the given time step (s) before its division by
-    /// [`subdivided`].
+    /// Creates the data of a match. `time_step` (s) is the time step of the motion before [`subdivided`]
+    /// divides it.
     pub(crate) fn new(
         target: &'a TargetSpectrum,
         settings: &Matching,
@@ -494,7 +494,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Misfit of a spectrum from its target.
+/// Misfit between a spectrum and its target.
 pub(crate) struct Fit {
     /// Largest relative misfit.
     pub(crate) misfit: f64,

@@ -1,7 +1,7 @@
 //! Reader of COSMOS format 1.20, volumes 0 (counts), 1 and 2.
 //!
-//! Every count and every Fortran format is taken from the line that states it. Spec: Strong-Motion
-//! Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
+//! The number of items in a block, and their Fortran format, are taken from the line that states them.
+//! Spec: Strong-Motion Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
 
 use super::source::{
     Columns, GAL, LARGEST_ACCELERATION, Printed, Source, latin1, leading_number, quoted, shorten,

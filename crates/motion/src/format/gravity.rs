@@ -10,7 +10,7 @@ use crate::record::{Channel, Quantity, Record};
 const TOLERANCE: f64 = 0.05;
 /// Largest mean (m/s²) of a ground motion over a whole record; a larger mean is an offset.
 const LARGEST_MEAN: f64 = 0.5 * STANDARD_GRAVITY;
-/// Limit (m/s²) of the mean of values that all have the same sign; a larger mean is not a ground motion.
+/// Largest mean (m/s²) of a ground motion whose values all have the same sign.
 const LARGEST_ONE_SIDED: f64 = 0.05 * STANDARD_GRAVITY;
 /// Shortest record (s) whose mean is checked; analytic pulses are shorter.
 const SHORTEST: f64 = 2.0;

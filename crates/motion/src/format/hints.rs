@@ -44,7 +44,7 @@ impl<'a> Hints<'a> {
         self.options
     }
 
-    /// Also marks as used the options that another reader has used.
+    /// Marks every option that another reader has used as used by this reader, too.
     pub(super) fn used_as(&self, other: &Hints<'_>) {
         for (mine, theirs) in [
             (&self.unit, &other.unit),
