@@ -300,8 +300,8 @@ pub fn shaken(
     Some(Intensities { samples, levels, middle, shape, correlations: independent(unknowns) })
 }
 
-/// Returns the factors by which the coefficients of `b(x)` are multiplied: 1 for `b₀`, `ln(x/x₀)` for `b₁`, and for the
-/// `bₓ` of each level 1 at this level and 0 elsewhere.
+/// Returns the factors by which the coefficients of `b(x)` are multiplied: 1 for `b₀`, `ln(x/x₀)` for `b₁`, and, for
+/// the `bₓ` of each level, 1 at that level and 0 at all other intensities.
 fn known(levels: &[f64], middle: f64, intensity: f64) -> Vec<f64> {
     let own = levels.iter().map(|level| f64::from(u8::from(*level == intensity)));
     [1.0, ln(intensity / middle)].into_iter().chain(own).collect()
@@ -403,8 +403,8 @@ impl Conditional {
         Self::new(self.samples, correlations)
     }
 
-    /// Returns a point with one constant fixed at a deviate. The other constants change in proportion to their
-    /// correlation with that constant.
+    /// Returns `point`, the values of all constants, with one constant fixed at a deviate. The other constants change
+    /// in proportion to their correlation with that constant.
     fn fixed(&self, point: &[f64], unknown: usize, deviate: f64) -> Vec<f64> {
         let change = deviate - point[unknown];
         let moved = point.iter().zip(&self.correlations[unknown]);

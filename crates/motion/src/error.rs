@@ -66,7 +66,7 @@ pub struct ReadFailure {
     pub line: Option<usize>,
     /// Column of the first offending character, counted from 1.
     pub column: Option<usize>,
-    /// Category of the refusal, for callers that handle categories differently.
+    /// Category of the refusal, so that callers can handle each category separately.
     pub refusal: Refusal,
     /// Content expected by the reader.
     pub expected: String,

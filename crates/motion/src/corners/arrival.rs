@@ -2,7 +2,7 @@
 
 use crate::math;
 
-/// Acceleration from which the motion is certainly strong motion, as a fraction of the peak acceleration.
+/// Acceleration at which strong motion has certainly begun, as a fraction of the peak acceleration.
 const SURE: f64 = 0.2;
 /// Length by which a search extends beyond the previous estimate of the arrival, as a fraction of the
 /// time before the strong motion. The first estimate is the beginning of the strong motion, the second

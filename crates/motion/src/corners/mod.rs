@@ -1,5 +1,5 @@
-//! Suggests filter corners from the frequency band in which the shaking exceeds the noise before
-//! it.
+//! Suggests filter corners from the frequency band in which the shaking exceeds the noise that was
+//! recorded before it.
 
 mod arrival;
 mod smooth;

@@ -5,8 +5,8 @@ use crate::format::Source;
 use crate::math::{STANDARD_GRAVITY, peak, take_mean};
 use crate::record::{Channel, Quantity, Record};
 
-/// Relative difference from gravity up to which a mean is considered gravity. The tolerance covers
-/// calibration errors and the tilt of a single axis.
+/// Largest relative difference between a mean and gravity at which the mean is still considered gravity.
+/// The tolerance covers calibration errors and the tilt of a single axis.
 const TOLERANCE: f64 = 0.05;
 /// Largest mean (m/s²) of a ground motion over a whole record; a larger mean is an offset.
 const LARGEST_MEAN: f64 = 0.5 * STANDARD_GRAVITY;

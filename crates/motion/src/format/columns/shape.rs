@@ -200,7 +200,7 @@ pub(super) fn is_one_sided(columns: &[Vec<f64>]) -> bool {
 }
 
 /// Returns the first row that contains a placeholder for a missing value, such as -999. A placeholder
-/// consists of nines only, and its magnitude is far larger than that of all other values.
+/// consists of nines only, and its magnitude is clearly larger than that of all other values.
 pub(super) fn mark(column: &[f64]) -> Option<usize> {
     let peak = math::peak(column);
     if !crate::format::is_nines(peak) {
