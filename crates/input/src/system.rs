@@ -128,7 +128,7 @@ fn regular(of: &fs::Metadata) -> io::Result<()> {
     ))
 }
 
-/// Returns the kind of a path that is neither a file nor a folder, with its article.
+/// Returns the kind of a path that is neither a file nor a folder, with its article, such as `a link`.
 #[cfg(unix)]
 fn kind(of: &fs::Metadata) -> &'static str {
     use std::os::unix::fs::FileTypeExt as _;

@@ -17,7 +17,7 @@ use crate::utc::Utc;
 pub(crate) const FORMAT: Format =
     Format { name: "cosmos", title: "COSMOS 1.20 volumes 0, 1 and 2", sniff, read };
 
-/// Unit codes of the format (table 2 of the specification).
+/// Code of the unit g in the format; the codes of other units follow (table 2 of the specification).
 const UNIT_G: i64 = 2;
 const UNIT_CM_S2: i64 = 4;
 const UNIT_GAL: i64 = 10;

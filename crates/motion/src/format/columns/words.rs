@@ -219,9 +219,11 @@ pub(super) const RATE_MARKS: &[&str] = &[
     "amostras por segundo",
 ];
 
-/// First letters of words for acceleration; the next two constants are for velocity and displacement.
+/// First letters of words for acceleration.
 pub(super) const ACCELERATIONS: &[&str] = &["acc", "acel", "beschl", "ivme"];
+/// First letters of words for velocity.
 pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
+/// First letters of words for displacement.
 pub(super) const DISPLACEMENTS: &[&str] =
     &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
 
