@@ -57,7 +57,8 @@ pub enum FitError {
         /// Lowest intensity of all cases.
         smallest: f64,
     },
-    /// The intensities of failures and of survivals overlap in at most one intensity.
+    /// The highest intensity at which a case survived is not above the lowest intensity at which a case
+    /// failed.
     #[error(
         "no case survived above {above} and none failed below {below}, so the dispersion cannot be determined; add \
          cases around these intensities, or give the dispersion"

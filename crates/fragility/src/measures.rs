@@ -102,8 +102,8 @@ pub struct Demanded {
     /// Proficiency `dispersion/b`: the scatter expressed in terms of intensity. It also penalizes measures on
     /// which the demand depends only weakly (Padgett et al. 2008).
     pub proficiency: f64,
-    /// p-value of the sufficiency test: if `ε` does not depend on a second quantity, the probability of a correlation
-    /// between the two that is at least as strong as the observed one.
+    /// p-value of the sufficiency test for a second quantity: the probability of a correlation between `ε` and this
+    /// quantity that is at least as strong as the observed one, if `ε` does not depend on the quantity.
     pub sufficiency: Option<f64>,
     /// Number of cases.
     pub cases: usize,

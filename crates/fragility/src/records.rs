@@ -27,8 +27,8 @@ pub struct LeaveOneOut {
 /// Fits one curve to all evidence, and for each group one curve to the evidence without that group.
 ///
 /// # Errors
-/// As for [`fit`]; [`FitError::Unstable`] if there are fewer than three groups, or if without one of the
-/// groups the evidence determines no curve. In the latter case a single record decides the result, and the
+/// As for [`fit`]; [`FitError::Unstable`] if there are fewer than three groups, or if the evidence determines no
+/// curve when one of the groups is omitted. In the latter case a single record decides the result, and the
 /// uncertainty cannot be estimated.
 pub fn leave_one_out(all: &[Evidence], dispersion: Dispersion) -> Result<LeaveOneOut, FitError> {
     let fitted = fit(all, dispersion)?.curve;

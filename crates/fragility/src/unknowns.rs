@@ -17,8 +17,8 @@ const THINNED: usize = 6;
 /// Number of discarded samples and number of kept samples of the posterior distribution.
 const SAMPLES: [usize; 2] = [400, 3000];
 
-/// Degrees of freedom of Student's t distribution, which is the prior distribution of every coefficient except
-/// `b`. Its heavy tail permits a single constant to decide the result.
+/// Degrees of freedom of Student's t distribution, which is the prior distribution of the coefficients `g`, `aⱼ`,
+/// `cᵢⱼ` and `bₓ`. Its heavy tail permits a single constant to decide the result.
 const FREEDOM: f64 = 3.0;
 
 /// Scale of the prior distribution of the coefficients `g` (the two halves of the runs) and `aⱼ` (the constants).
@@ -39,10 +39,11 @@ const PRIOR_SLOPE: f64 = 4.0;
 /// Scale of the prior distribution of `bₓ`, the departure of the share at a single intensity from the curve.
 const PRIOR_LEVELS: f64 = 0.3;
 
-/// Index of `b` in a sample.
+/// Index in a sample of `b`, the constant term of the regression: the middle of the values of `η` ([`Conditional`]).
 const MIDDLE: usize = 1;
 
-/// Standard deviation of the normal prior distribution of `b`.
+/// Standard deviation of the normal prior distribution of the middle, which is `b` in [`Conditional`] and `b₀` in
+/// [`Intensities`]. The mean of this distribution is 0.
 const PRIOR_MIDDLE: f64 = 2.5;
 
 /// A run with randomly drawn constants.
@@ -252,7 +253,7 @@ pub struct Intensities {
     samples: Vec<Vec<f64>>,
     /// Intensities at which the share may depart from the curve.
     levels: Vec<f64>,
-    /// `x₀`.
+    /// `x₀`: the geometric mean of the intensities of all runs.
     middle: f64,
     shape: Shape,
     /// Correlations of the deviates.
@@ -299,7 +300,8 @@ pub fn shaken(
     Some(Intensities { samples, levels, middle, shape, correlations: independent(unknowns) })
 }
 
-/// Returns the factors of the coefficients in `b(x)`.
+/// Returns the factors by which the coefficients of `b(x)` are multiplied: 1 for `b₀`, `ln(x/x₀)` for `b₁`, and, for
+/// the `bₓ` of each level, 1 at that level and 0 at all other intensities.
 fn known(levels: &[f64], middle: f64, intensity: f64) -> Vec<f64> {
     let own = levels.iter().map(|level| f64::from(u8::from(*level == intensity)));
     [1.0, ln(intensity / middle)].into_iter().chain(own).collect()
@@ -401,8 +403,8 @@ impl Conditional {
         Self::new(self.samples, correlations)
     }
 
-    /// Returns a point with one constant fixed at a deviate. The other constants change in proportion to their
-    /// correlation with that constant.
+    /// Returns `point`, the values of all constants, with one constant fixed at a deviate. The other constants change
+    /// in proportion to their correlation with that constant.
     fn fixed(&self, point: &[f64], unknown: usize, deviate: f64) -> Vec<f64> {
         let change = deviate - point[unknown];
         let moved = point.iter().zip(&self.correlations[unknown]);

@@ -130,7 +130,7 @@ pub enum Problem {
         tag: String,
         /// Name of the selected variant.
         variant: String,
-        /// Names of the variants that have this field, quoted and joined.
+        /// Names of the variants that have this field, in quotation marks and joined by "and".
         owners: String,
         /// All valid keys.
         valid: Vec<String>,
@@ -212,7 +212,7 @@ pub enum Problem {
     OneOf {
         /// Label of the table that lacks the field, such as `[run]`.
         section: String,
-        /// The alternatives, joined.
+        /// The alternatives, each with an example of its value, joined by commas.
         choices: String,
     },
     /// Values that are valid by themselves but inconsistent with each other.

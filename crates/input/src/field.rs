@@ -110,8 +110,8 @@ pub enum Kind {
     Value,
     /// A list of single values whose kind depends on another field.
     Values,
-    /// One of a list of names, or a table. A name is short for a table in which the given key has
-    /// this value.
+    /// One of a list of names, or a table. A name is short for a table in which the given key has the
+    /// name as its value.
     ChoiceOrTable(fn() -> Vec<&'static str>, &'static str, &'static Section),
 }
 

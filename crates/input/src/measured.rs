@@ -120,7 +120,7 @@ impl Table {
         Self::parse(&path.display().to_string(), &text)
     }
 
-    /// Parses a table from text. `file` is the name used in errors.
+    /// Parses a table from text. `file` is the file name that error messages show.
     ///
     /// # Errors
     /// If the text has no header or no rows, or if a row has a different number of columns than the
@@ -169,7 +169,7 @@ impl Table {
         Ok(Self { file: file.to_owned(), header_line, columns, rows })
     }
 
-    /// Returns the name of the file used in errors.
+    /// Returns the file name that error messages show.
     pub fn file(&self) -> &str {
         &self.file
     }

@@ -21,19 +21,19 @@ pub enum QuantityError {
     /// The text does not start with a decimal number.
     #[error("`{text}` does not start with a decimal number")]
     NoNumber {
-        /// Text as given, shortened.
+        /// The input text, truncated to 60 characters.
         text: String,
     },
     /// The number exceeds the range of double precision.
     #[error("`{text}` is too large to compute with")]
     Overflow {
-        /// Text as given, shortened.
+        /// The input text, truncated to 60 characters.
         text: String,
     },
     /// The unit is missing.
     #[error("`{text}` has no unit")]
     NoUnit {
-        /// Text as given, shortened.
+        /// The input text, truncated to 60 characters.
         text: String,
     },
     /// The unit is unknown.
@@ -41,7 +41,7 @@ pub enum QuantityError {
     UnknownUnit {
         /// Unknown unit.
         unit: String,
-        /// Text as given, shortened.
+        /// The input text, truncated to 60 characters.
         text: String,
         /// Most similar unit.
         nearest: Option<String>,
@@ -49,7 +49,7 @@ pub enum QuantityError {
     /// The unit expression is malformed.
     #[error("cannot read the unit of `{text}`: {reason}")]
     Malformed {
-        /// Text as given, shortened.
+        /// The input text, truncated to 60 characters.
         text: String,
         /// Reason, in words.
         reason: &'static str,
@@ -57,13 +57,13 @@ pub enum QuantityError {
     /// The unit `gal` has two meanings, and no expected dimension selects one of them.
     #[error("the unit `gal` in `{text}` may be a US gallon or cm/s^2; write `gallon` or `Gal`")]
     Ambiguous {
-        /// Text as given, shortened.
+        /// The input text, truncated to 60 characters.
         text: String,
     },
     /// The quantity does not have the expected dimension.
     #[error("`{text}` is {found}, expected {expected}")]
     WrongDimension {
-        /// Text as given, shortened.
+        /// The input text, truncated to 60 characters.
         text: String,
         /// Dimension of the given quantity.
         found: String,

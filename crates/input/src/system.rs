@@ -128,7 +128,7 @@ fn regular(of: &fs::Metadata) -> io::Result<()> {
     ))
 }
 
-/// Returns the kind of a path that is neither a file nor a folder, with its article.
+/// Returns the kind of a path that is neither a file nor a folder, with its article, such as `a link`.
 #[cfg(unix)]
 fn kind(of: &fs::Metadata) -> &'static str {
     use std::os::unix::fs::FileTypeExt as _;
@@ -283,7 +283,7 @@ pub fn is_unfinished(path: &Path, meant: impl Fn(&str) -> bool) -> bool {
     !process.is_empty() && process.bytes().all(|c| c.is_ascii_digit()) && meant(whole)
 }
 
-/// Returns the suffix of the incomplete files of this process.
+/// Returns the suffix that this process gives to the names of incomplete files.
 pub fn unfinished() -> String {
     format!(".{}.part", std::process::id())
 }

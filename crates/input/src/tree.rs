@@ -120,7 +120,7 @@ impl Table {
 /// A source file.
 #[derive(Debug, Clone)]
 pub struct SourceFile {
-    /// Name of the file in errors.
+    /// File name that error messages show.
     pub name: String,
     /// Content of the file.
     pub text: String,
@@ -156,7 +156,7 @@ impl Sources {
         }
     }
 
-    /// Gives an origin to every value of a table that has no source text. Each value is recorded as
+    /// Gives an origin to every value of a table that was not parsed from text. Each value is recorded as
     /// an override, written as its path and value; items of lists are numbered from 1.
     pub fn adopt(&mut self, table: &mut Table) {
         self.adopt_below(table, "");

@@ -7,10 +7,10 @@ use crate::sampled::integrate;
 use crate::site::Site;
 use crate::utc::Utc;
 
-/// Number of samples on each side in the interpolation of a fractional shift.
+/// Number of samples on each side of an interpolated point, for shifts by a fraction of a time step.
 const REACH: usize = 32;
-/// Shifts below this fraction of a time step are ignored, because the clocks of recorders are less
-/// accurate.
+/// Shifts below this fraction of a time step are ignored, because they are smaller than the errors of
+/// recorder clocks.
 const NEGLECTED: f64 = 0.01;
 
 impl Record {
@@ -104,7 +104,7 @@ impl Record {
 }
 
 /// Makes a channel begin `late` seconds later and last `length` seconds. Returns the fraction of a
-/// time step by which the channel was shifted by interpolation, if it was shifted.
+/// time step by which the channel was shifted by interpolation; `None` if it was not interpolated.
 fn begin_later(channel: &mut Channel, late: f64, length: f64, corrected: bool) -> Option<f64> {
     let steps = late / channel.time_step;
     let part = steps - steps.round();

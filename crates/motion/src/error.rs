@@ -2,7 +2,7 @@
 
 pub use barrelstack_series::MotionError;
 
-/// Category of the reason for which a file is refused.
+/// Reason why a file is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// No reader recognizes the content.
@@ -66,7 +66,7 @@ pub struct ReadFailure {
     pub line: Option<usize>,
     /// Column of the first offending character, counted from 1.
     pub column: Option<usize>,
-    /// Category of the refusal, for evaluation by programs.
+    /// Category of the refusal, so that callers can handle each category separately.
     pub refusal: Refusal,
     /// Content expected by the reader.
     pub expected: String,

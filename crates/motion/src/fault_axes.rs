@@ -1,12 +1,12 @@
-//! Rotates two horizontals to the axes of a fault or to the horizontal direction with the largest
-//! velocity.
+//! Rotates two horizontal components to the axes of a fault or to the horizontal direction with the
+//! largest velocity.
 
 use crate::error::MotionError;
 use crate::record::{Channel, Record};
 use crate::rotd::rotated_peak;
 use crate::select::Component;
 
-/// Two horizontals after rotation.
+/// Two horizontal components after rotation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
     /// Component normal to the fault, or along the direction of the largest velocity.
@@ -23,7 +23,7 @@ impl Record {
     /// component is positive 90 degrees clockwise from the strike.
     ///
     /// # Errors
-    /// If the strike is not finite, or there are not two horizontals of known azimuth.
+    /// If the strike is not finite, or there are not two horizontal components of known azimuth.
     pub fn fault_axes(&self, strike: f64) -> Result<Turned, MotionError> {
         MotionError::require_finite("strike (degrees)", strike)?;
         Ok(Turned {
@@ -42,7 +42,7 @@ impl Record {
     /// velocity.
     ///
     /// # Errors
-    /// If there are not two horizontals of known azimuth.
+    /// If there are not two horizontal components of known azimuth.
     pub fn fastest_axes(&self) -> Result<Turned, MotionError> {
         let north = self.component(&Component::Azimuth(0.0))?;
         let east = self.component(&Component::Azimuth(90.0))?;

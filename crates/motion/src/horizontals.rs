@@ -1,4 +1,4 @@
-//! Intensity measures of two horizontals, combined into one number.
+//! Intensity measures of two horizontal components, combined into one number.
 
 use std::str::FromStr;
 
@@ -8,7 +8,7 @@ use crate::math::{self, PI};
 use crate::rotd::{DIRECTIONS, rotated_peak, rotated_spectrum};
 use crate::sampled::{Sampled, running_trapezoid};
 
-/// Combination of the intensity measures of two horizontals into one number.
+/// Rule by which the intensity measures of two horizontal components are combined into one number.
 ///
 /// The text form is `rotd50`, `rotd100` or `geomean`.
 ///
@@ -33,8 +33,8 @@ pub enum Horizontals {
 impl Horizontals {
     /// Returns the combined measure of two components with the same time step (SI units).
     ///
-    /// For measures over directions, the longer component is cut to the shorter one; the geometric
-    /// mean uses each component in full. Peaks and spectral accelerations are computed from the
+    /// For measures over directions, the longer component is cut to the length of the shorter one; the
+    /// geometric mean uses each component in full. Peaks and spectral accelerations are computed from the
     /// convex hull of the two responses. All other measures are computed from the motion rotated in
     /// steps of one degree.
     ///

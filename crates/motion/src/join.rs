@@ -6,7 +6,8 @@ use crate::record::{Channel, Record, Stage};
 
 /// Shortest overlap of two parts (s).
 const SHORTEST_OVERLAP: f64 = 1.0;
-/// Largest relative difference of the motion inside an overlap.
+/// Largest root-mean-square difference between two parts in their overlap, divided by the
+/// root-mean-square motion.
 const LARGEST_MISFIT: f64 = 0.05;
 
 impl Record {

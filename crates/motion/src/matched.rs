@@ -3,7 +3,7 @@
 use crate::ground_motion::GroundMotion;
 use crate::matching::MatchMethod;
 
-/// A range of periods in which a spectrum misses its target on one side.
+/// A range of periods in which a spectrum exceeds its target, or falls short of it, by more than the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Missed {
     /// Shortest period of the range (s).

@@ -65,8 +65,8 @@ impl Default for Matching {
 /// Exponents of the ratio of target to spectrum in the frequency domain. Each match uses one
 /// exponent; if the match stalls, the next match uses the next exponent.
 const AMPLITUDE_STEPS: [f64; 4] = [0.7, 0.5, 0.9, 0.3];
-/// Product of the number of samples and the number of rounds above which no further match is
-/// started. For a motion of 35,000 samples, the limit is 400 rounds, which take about 6 s.
+/// Limit of the number of samples multiplied by the number of rounds. Above the limit, no further match
+/// is started. For a motion of 35,000 samples, the limit is 400 rounds, which take about 6 s.
 const MOST_SAMPLES: usize = 14_000_000;
 
 /// Time steps per shortest matched period. With this number, a peak between two samples is
@@ -278,8 +278,8 @@ pub(crate) struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    /// Creates the data of a match for a motion with the given time step (s) before its division by
-    /// [`subdivided`].
+    /// Creates the data of a match. `time_step` (s) is the time step of the motion before [`subdivided`]
+    /// divides it.
     pub(crate) fn new(
         target: &'a TargetSpectrum,
         settings: &Matching,
@@ -494,7 +494,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Misfit of a spectrum from its target.
+/// Misfit between a spectrum and its target.
 pub(crate) struct Fit {
     /// Largest relative misfit.
     pub(crate) misfit: f64,

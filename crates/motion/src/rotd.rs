@@ -1,4 +1,4 @@
-//! Median and largest response of two horizontals over all directions.
+//! Median and largest response of two horizontal components over all directions.
 
 use crate::direction::Direction;
 use crate::error::MotionError;
@@ -101,10 +101,10 @@ fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     corners
 }
 
-/// Returns the pseudo-accelerations (m/s²) of two horizontals over all directions, one result per
-/// period (s).
+/// Returns the pseudo-accelerations (m/s²) of two horizontal components over all directions, one result
+/// per period (s).
 ///
-/// The longer component is cut to the shorter one.
+/// The longer component is cut to the length of the shorter one.
 ///
 /// # Errors
 /// The same as for [`crate::response()`].

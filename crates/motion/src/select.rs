@@ -13,8 +13,8 @@ use crate::process::Processing;
 use crate::record::{Channel, Record, Stage};
 use crate::sampled::Sampled;
 
-/// Largest cosine of the angle between two horizontals that are treated as perpendicular. The limit
-/// corresponds to a deviation of about five degrees.
+/// Largest cosine of the angle between two horizontal components that are treated as perpendicular. The
+/// limit corresponds to a deviation of about five degrees.
 const OBLIQUE: f64 = 0.09;
 
 /// Identifies one component of a record.
@@ -34,7 +34,7 @@ pub enum Component {
     /// A channel by its name, ignoring case.
     Name(String),
     /// The motion along an azimuth (degrees clockwise from north); if no channel has this azimuth,
-    /// the motion is computed from two horizontals.
+    /// the motion is computed from two horizontal components.
     Azimuth(f64),
 }
 
@@ -86,7 +86,7 @@ impl FromStr for Component {
 
 impl Record {
     /// Returns the channel identified by `component`. For an azimuth that no channel has, a new
-    /// channel is computed from two horizontals.
+    /// channel is computed from two horizontal components.
     ///
     /// # Errors
     /// If there is no such channel, or the motion along the azimuth cannot be derived.
@@ -121,7 +121,7 @@ impl Record {
     }
 
     /// Returns the motion along an azimuth, from a channel with this azimuth or from two
-    /// horizontals.
+    /// horizontal components.
     fn along(&self, azimuth: f64) -> Result<Channel, MotionError> {
         let known: Vec<(&Channel, f64)> = self
             .channels
@@ -151,8 +151,8 @@ impl Record {
     /// Converts a horizontal and optionally a vertical component to a ground motion, with the given
     /// processing.
     ///
-    /// The longer component is cut to the shorter one. With [`Processing::none`], the record drives
-    /// a model from its first sample.
+    /// The longer component is cut to the length of the shorter one. With [`Processing::none`], the
+    /// record drives a model from its first sample.
     ///
     /// # Errors
     /// If a component is missing, the time steps differ, or a setting is out of range.
@@ -258,8 +258,8 @@ impl Record {
         Ok((series(&first)?, series(&second)?))
     }
 
-    /// Returns the ground motion of the first horizontal and the vertical component, if there is
-    /// one, with the default processing for the record's stage.
+    /// Returns the ground motion of the first horizontal component and, if there is one, the vertical
+    /// component, with the default processing for the record's stage.
     ///
     /// # Errors
     /// The same as for [`Record::ground_motion`].
@@ -316,8 +316,8 @@ fn cut_to_shorter(
     Ok(())
 }
 
-/// Returns the motion along an azimuth, computed from two horizontals of different azimuth by
-/// solving for the north and the east component. The two horizontals need not be perpendicular.
+/// Returns the motion along an azimuth, computed from two horizontal components of different azimuth by
+/// solving for the north and the east component. The two components need not be perpendicular.
 fn rotate(
     first: (&Channel, f64),
     second: (&Channel, f64),

@@ -156,7 +156,7 @@ fn without_offset(text: &str) -> (&str, f64) {
         if hours > LARGEST_OFFSET || minutes >= 60 {
             return None;
         }
-        // A date also contains dashes, but no time of day before them.
+        // A date also contains dashes; unlike an offset, they do not follow a time of day.
         let offset = f64::from(hours * 3600 + minutes * 60);
         before.contains(':').then_some((before, sign * offset))
     };

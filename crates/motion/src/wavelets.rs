@@ -17,9 +17,10 @@ const WATCHED_WEIGHT: f64 = 0.4;
 /// Largest number of times that the system of a round is solved, because each solution may raise
 /// further extrema above the target.
 const BOUNDING: usize = 5;
-/// Limits of the applied fraction of a correction. The fraction is doubled after a success and
-/// halved after a failure.
+/// Largest applied fraction of a correction. The fraction is doubled after a success and halved after a
+/// failure.
 const LARGEST_SHARE: f64 = 0.8;
+/// Smallest applied fraction of a correction.
 const SMALLEST_SHARE: f64 = 0.05;
 /// Polishing ends when the misfit is at most this fraction of the tolerance.
 const POLISHED: f64 = 0.95;

@@ -34,7 +34,8 @@ pub enum IntensityMeasure {
     /// Cumulative absolute velocity (m/s) over those one-second intervals in which `|a|` exceeds
     /// 0.025 g (EPRI 1991).
     CavStandardized,
-    /// Time between two fractions of the Arias intensity (s) (Trifunac and Brady 1975).
+    /// Time during which the Arias intensity grows from one fraction of its final value to another (s)
+    /// (Trifunac and Brady 1975).
     SignificantDuration {
         /// Start of the duration as a fraction of the Arias intensity, such as 0.05.
         from: f64,

@@ -9,7 +9,7 @@ use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use crate::math::{self, TAU};
 
-/// Random generator of all synthetic motions.
+/// Random generator that all synthetic motions use.
 ///
 /// ```
 /// use barrelstack_series::random::Random;

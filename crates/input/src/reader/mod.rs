@@ -26,7 +26,7 @@ pub struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// Opens a table for reading. If `table` is `None`, the table is absent and all its fields have
-    /// their defaults; `origin` is the place of the table in errors.
+    /// their defaults. `origin` is the place that error messages state for the table.
     pub fn open(
         sources: &'a Sources,
         section: &'static Section,

@@ -34,8 +34,8 @@ pub struct Flatfile {
     stations: BTreeMap<(String, String, String), FlatRow>,
 }
 
-/// Names of a column in the published table and in its abridged forms; there is one constant per
-/// column.
+/// Names of the column of record sequence numbers, in the published table and in its abridged forms.
+/// Each of the following constants holds the names of another column.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
 const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
 const STATION: &[&str] = &["station name", "station", "station_code"];

@@ -1,5 +1,5 @@
-//! Intensity measures of a record: of every component, of both horizontals jointly, and of the
-//! velocity pulse.
+//! Intensity measures of a record: of every component, of both horizontal components jointly, and of
+//! the velocity pulse.
 
 use crate::error::MotionError;
 use crate::horizontals::Horizontals;
@@ -41,7 +41,7 @@ pub struct MeasuredComponent {
     pub spectrum: Vec<f64>,
 }
 
-/// Joint intensity measures of both horizontals, in SI units.
+/// Joint intensity measures of both horizontal components, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPair {
     /// `RotD50` of peak acceleration (m/s²) and velocity (m/s).
@@ -61,9 +61,9 @@ pub struct Measured {
     pub horizontals: Vec<MeasuredComponent>,
     /// The first vertical component, if there is one.
     pub vertical: Option<MeasuredComponent>,
-    /// Joint measures of both horizontals, if they form a pair.
+    /// Joint measures of both horizontal components, if they form a pair.
     pub pair: Option<MeasuredPair>,
-    /// Reason why the horizontals do not form a pair.
+    /// Reason why the horizontal components do not form a pair.
     pub no_pair: Option<String>,
 }
 

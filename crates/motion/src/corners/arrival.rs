@@ -2,10 +2,11 @@
 
 use crate::math;
 
-/// Fraction of the peak acceleration above which the motion is certainly strong motion.
+/// Acceleration at which strong motion has certainly begun, as a fraction of the peak acceleration.
 const SURE: f64 = 0.2;
-/// Length by which the second search extends beyond the first result, as a fraction of the time
-/// before the strong motion.
+/// Length by which a search extends beyond the previous estimate of the arrival, as a fraction of the
+/// time before the strong motion. The first estimate is the beginning of the strong motion, the second
+/// is the result of the first search.
 const BEHIND: f64 = 0.1;
 
 /// Returns the time (s) from the first sample to the first arrival; 0 if the shaking starts with

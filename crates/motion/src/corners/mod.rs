@@ -1,5 +1,5 @@
-//! Suggests filter corners from the frequency band in which the shaking exceeds the noise before
-//! it.
+//! Suggests filter corners from the frequency band in which the shaking exceeds the noise that was
+//! recorded before it.
 
 mod arrival;
 mod smooth;
@@ -95,11 +95,11 @@ struct Spectra {
 /// is stricter if the noise is short.
 ///
 /// The corners are the ends of the first frequency band that has a sufficient ratio and covers the
-/// frequency range of the criterion. The high-pass corner is raised, if necessary, to one over the
-/// duration. It is also raised, if necessary, to the frequency at which the ratio is smallest among
-/// the frequencies below its peak. The low-pass corner is lowered, if necessary, to 0.75 of the
-/// Nyquist frequency or to 40 Hz. The automatic processing of the USGS uses this rule (Hearne et
-/// al. 2019; Ramos-Sepúlveda et al. 2023).
+/// frequency range of the criterion. The high-pass corner has two lower limits: one over the duration,
+/// and the foot of the ratio. To find the foot, only frequencies below the peak of the ratio are
+/// considered; the foot is the frequency at which the ratio is smallest in this range. The low-pass
+/// corner has two upper limits: 0.75 of the Nyquist frequency, and 40 Hz. The automatic processing of
+/// the USGS uses this rule (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
 ///
 /// # Errors
 /// If there is less than 1 s of noise or 5 s of shaking, or if the criterion is not satisfied.
@@ -149,7 +149,7 @@ pub fn noise_corners(
 impl Record {
     /// Returns the filter corners of every channel, in order.
     ///
-    /// Both horizontals get the overlap of their two frequency bands, so that they can be rotated
+    /// Both horizontal components get the overlap of their two frequency bands, so that they can be rotated
     /// together. All channels use the earliest arrival of any channel.
     pub fn noise_corners(&self, criterion: &NoiseCriterion) -> Vec<Result<Corners, MotionError>> {
         let first = self
@@ -224,8 +224,8 @@ impl Spectra {
             .fold(f64::INFINITY, |least, (_, ratio)| least.min(*ratio))
     }
 
-    /// Returns the frequency at which the signal-to-noise ratio is smallest, among the frequencies
-    /// below its peak. At even lower frequencies, drift raises the ratio.
+    /// Returns the foot of the signal-to-noise ratio: in the range of frequencies below the peak of the
+    /// ratio, the frequency at which the ratio is smallest. Below the foot, drift raises the ratio.
     fn foot(&self) -> f64 {
         let best = |range: std::ops::Range<usize>, sign: f64| {
             range.reduce(

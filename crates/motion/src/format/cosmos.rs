@@ -1,7 +1,7 @@
 //! Reader of COSMOS format 1.20, volumes 0 (counts), 1 and 2.
 //!
-//! Every count and every Fortran format is taken from the line that states it. Spec: Strong-Motion
-//! Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
+//! The number of items in a block, and their Fortran format, are taken from the line that states them.
+//! Spec: Strong-Motion Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
 
 use super::source::{
     Columns, GAL, LARGEST_ACCELERATION, Printed, Source, latin1, leading_number, quoted, shorten,
@@ -17,7 +17,7 @@ use crate::utc::Utc;
 pub(crate) const FORMAT: Format =
     Format { name: "cosmos", title: "COSMOS 1.20 volumes 0, 1 and 2", sniff, read };
 
-/// Unit codes of the format (table 2 of the specification).
+/// Code of the unit g in the format; the codes of other units follow (table 2 of the specification).
 const UNIT_G: i64 = 2;
 const UNIT_CM_S2: i64 = 4;
 const UNIT_GAL: i64 = 10;

@@ -5,12 +5,12 @@ use crate::format::Source;
 use crate::math::{STANDARD_GRAVITY, peak, take_mean};
 use crate::record::{Channel, Quantity, Record};
 
-/// Relative difference from gravity up to which a mean is considered gravity. The tolerance covers
-/// calibration errors and the tilt of a single axis.
+/// Largest relative difference between a mean and gravity at which the mean is still considered gravity.
+/// The tolerance covers calibration errors and the tilt of a single axis.
 const TOLERANCE: f64 = 0.05;
 /// Largest mean (m/s²) of a ground motion over a whole record; a larger mean is an offset.
 const LARGEST_MEAN: f64 = 0.5 * STANDARD_GRAVITY;
-/// Limit (m/s²) of the mean of values that all have the same sign; a larger mean is not a ground motion.
+/// Largest mean (m/s²) of a ground motion whose values all have the same sign.
 const LARGEST_ONE_SIDED: f64 = 0.05 * STANDARD_GRAVITY;
 /// Shortest record (s) whose mean is checked; analytic pulses are shorter.
 const SHORTEST: f64 = 2.0;

@@ -44,7 +44,7 @@ impl<'a> Hints<'a> {
         self.options
     }
 
-    /// Also marks as used the options that another reader has used.
+    /// Adds the options that another reader has used to the options that this reader has used.
     pub(super) fn used_as(&self, other: &Hints<'_>) {
         for (mine, theirs) in [
             (&self.unit, &other.unit),

@@ -22,8 +22,8 @@ pub(super) fn quantity(
     Some(hints.recorded().or(metadata).unwrap_or_else(by_code))
 }
 
-/// Converts counts or values of a channel to accelerations, and removes the mean of a raw
-/// accelerometer.
+/// Converts counts or values of a channel to accelerations, and removes the mean if the channel is a raw
+/// record of an accelerometer.
 ///
 /// `scaled` contains SI values of the recorded quantity. The quantity is taken from the caller,
 /// else from the metadata, else from the channel code. Velocities and displacements are

@@ -179,8 +179,8 @@ fn names(content: &str) -> Option<(String, String)> {
     Some((fields.fixed(2).unwrap_or_default().to_owned(), station))
 }
 
-/// Reads a channel from blockette 052, which does not contain the sensitivity. Also returns the SI
-/// value of the unit of the signal.
+/// Reads a channel from blockette 052, which does not contain the sensitivity. Also returns the factor
+/// that converts the signal unit of the channel to SI.
 fn channel(
     content: &str,
     (network, station): &(String, String),

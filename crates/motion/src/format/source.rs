@@ -106,8 +106,8 @@ impl<'a> Source<'a> {
         Some((at, word.trim_end_matches('.').to_owned()))
     }
 
-    /// Returns the first line before `end` whose text `value` accepts, with the value that it
-    /// returns.
+    /// Applies `value` to the text of each line before `end`. Returns the first line for which the
+    /// result is not `None`, together with this result.
     pub(crate) fn field(
         &self,
         end: usize,
@@ -136,7 +136,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Checks that a block begins with a mark on a line; `expected` describes the mark in errors.
+    /// Checks that a block begins with a mark on a line; error messages describe the mark as `expected`.
     pub(crate) fn require_mark(
         &self,
         line: usize,

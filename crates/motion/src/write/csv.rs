@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use crate::error::MotionError;
 use crate::record::Record;
 
-/// Start of the comment with the velocity at the first sample of each channel, written if any of
-/// these velocities is not zero.
+/// Start of the comment that states the velocity at the first sample of each channel. The comment is
+/// written only if one of these velocities is not zero.
 pub(crate) const INITIAL_VELOCITY: &str = "# initial velocity (m/s):";
 
 /// First line of CSV files written by this crate; states quantity and unit.

@@ -6,7 +6,7 @@ use crate::fourier::{Complex, correlate, forward, inverse};
 
 /// Length of the wavelet's support, in the wavelet's own units.
 const SUPPORT: usize = 7;
-/// Number of times that the spacing between the points of the wavelet table is halved, from 1 on.
+/// Number of times that the point spacing of the wavelet table is halved; the initial spacing is 1.
 const LEVELS: u32 = 8;
 /// Center frequency of the wavelet in its own units: a pulse of scale `s` has the period
 /// `s/0.7143`.

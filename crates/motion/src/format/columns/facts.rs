@@ -51,9 +51,9 @@ pub(super) struct Facts {
     pub(super) component: Option<String>,
 }
 
-/// Largest time step (s) and smallest sampling rate (Hz) that are accepted from lines that do not
-/// name the quantity.
+/// Largest time step (s) that is accepted from a line that does not name the quantity.
 const LARGEST_UNNAMED_STEP: f64 = 0.1;
+/// Smallest sampling rate (Hz) that is accepted from a line that does not name the quantity.
 const SMALLEST_UNNAMED_RATE: f64 = 20.0;
 
 impl Facts {

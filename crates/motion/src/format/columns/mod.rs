@@ -200,7 +200,7 @@ fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
     }
 }
 
-/// Removes the first column and its name if the column numbers the rows.
+/// Removes the first column and its name if this column contains row numbers.
 fn without_index(
     record: &mut Record,
     names: Option<Vec<Name>>,

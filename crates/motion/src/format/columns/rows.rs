@@ -199,9 +199,9 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
     source.ragged(line, width, found)
 }
 
-/// Interprets rows of several values without times. The columns are channels if the header names
-/// them. All values are one series, read row by row with a warning, if the stated number of samples
-/// or the values themselves indicate this.
+/// Interprets rows of several values without times. If the header names the columns, each is a channel.
+/// Otherwise, the rows must be parts of one series, as indicated by the stated number of samples or by
+/// the values themselves; the series is read row by row.
 pub(super) fn without_time(
     source: &Source<'_>,
     first: usize,

@@ -54,7 +54,7 @@ pub(super) fn rise_alike(first: &[f64], other: &[f64], ratio: Option<f64>) -> bo
     step > 0.0 && (0..first.len()).all(|row| off(row) < step)
 }
 
-/// Returns `true` if a column numbers its rows from 0 or 1.
+/// Returns `true` if a column contains the row numbers, counted from 0 or 1.
 pub(super) fn is_index(column: &[f64]) -> bool {
     matches!(column.first(), Some(0.0 | 1.0))
         && column.windows(2).all(|pair| pair[1] - pair[0] == 1.0)
@@ -199,8 +199,8 @@ pub(super) fn is_one_sided(columns: &[Vec<f64>]) -> bool {
     columns.iter().all(one_sided) && !columns.iter().any(|column| rests(column))
 }
 
-/// Returns the row of a placeholder for a missing value, such as -999: a number of nines only,
-/// larger in magnitude than all other values and separated from them by a gap.
+/// Returns the first row that contains a placeholder for a missing value, such as -999. A placeholder
+/// consists of nines only, and its magnitude is clearly larger than that of all other values.
 pub(super) fn mark(column: &[f64]) -> Option<usize> {
     let peak = math::peak(column);
     if !crate::format::is_nines(peak) {

@@ -219,14 +219,16 @@ pub(super) const RATE_MARKS: &[&str] = &[
     "amostras por segundo",
 ];
 
-/// First letters of words for acceleration, velocity and displacement.
+/// First letters of words for acceleration.
 pub(super) const ACCELERATIONS: &[&str] = &["acc", "acel", "beschl", "ivme"];
+/// First letters of words for velocity.
 pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
+/// First letters of words for displacement.
 pub(super) const DISPLACEMENTS: &[&str] =
     &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
 
-/// Returns `true` for a unit of the output of a digitizer. Such an output must be converted by a
-/// sensitivity.
+/// Returns `true` for a unit of raw digitizer output, such as counts or volts. Values in such a unit
+/// must be converted by a sensitivity.
 pub(super) fn is_of_instrument(unit: &str) -> bool {
     const UNITS: &[&str] = &[
         "v", "mv", "uv", "volt", "volts", "lsb", "lsbs", "count", "counts", "cts", "adc", "digit",
