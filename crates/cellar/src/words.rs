@@ -520,7 +520,7 @@ fn of_aisle(aisle: &AisleAnswer, of: u32) -> String {
     )
 }
 
-/// Returns a range of a share over a number of variants.
+/// Formats the range of a share over a number of variants, in percent.
 pub(crate) fn span_of_shares(range: &Range, of: u32) -> String {
     let [low, high] = range.stated(of).map(percent);
     if low == high { low } else { format!("{low} to {high}") }

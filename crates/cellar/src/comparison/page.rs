@@ -140,7 +140,7 @@ fn courses(found: &CellarComparison) -> Table {
     )
 }
 
-/// Returns the table of all layouts with one number in each cell, for programs.
+/// Returns the machine-readable table of all layouts, with one number in each cell.
 pub fn csv(found: &CellarComparison) -> Table {
     let number = |value: f64| Cell::Number(value, 6);
     let count = |value: u32| number(f64::from(value));
