@@ -416,7 +416,7 @@ pub fn document(summary: &AftershockSummary) -> Document {
     }
 }
 
-/// Returns the output files by name, with the report in a language.
+/// Returns the output files by name; the report is in the given language.
 ///
 /// # Errors
 /// If the summary cannot be written as JSON.

@@ -393,7 +393,7 @@ fn obstacles(summary: &CellarSummary) -> Table {
 }
 
 impl Answer {
-    /// Returns the output files by name, with the report in a language.
+    /// Returns the output files by name; the report is in the given language.
     ///
     /// # Errors
     /// If the summary cannot be written as JSON.

@@ -175,9 +175,9 @@ impl Of {
 /// Returns the ratio of the remaining time to the time spent, when `open` of `all` cases are unfinished; `None` before
 /// any stack is shaken.
 ///
-/// Cases are expected to end early at the rate observed so far; the first cases are expected to
-/// take 0.7 of their full time. Stacks that are still settling are expected to need the settling
-/// time of the others.
+/// Cases are expected to end early at the rate observed so far. At the start, when no rate is known, each case is
+/// expected to take 0.7 of its full time. Stacks that are still settling are expected to need the settling time of the
+/// others.
 fn left(work: Work, open: f64, all: f64) -> Option<f64> {
     let rate = (work.early + 0.75) / (work.done + 1.0);
     // Close to (1 - exp(-rate)) / rate, the mean share of a case that ends early at a constant

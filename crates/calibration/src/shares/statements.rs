@@ -99,7 +99,7 @@ pub enum Kind {
     Few,
     /// At least one of a number of stacks fell.
     Some,
-    /// Direction of the falls.
+    /// Direction in which stacks fell; such a statement has no likelihood.
     Along,
     /// A statement that has no likelihood.
     Unusable,

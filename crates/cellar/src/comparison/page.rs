@@ -264,7 +264,7 @@ fn provenance(layouts: &[Layout], found: &CellarComparison) -> Vec<(String, Stri
     pairs
 }
 
-/// Returns the files of a comparison besides its page, by name.
+/// Returns the files of a comparison by name, except its page.
 ///
 /// # Errors
 /// If the document cannot be written as JSON.

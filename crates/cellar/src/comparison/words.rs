@@ -139,7 +139,8 @@ fn words_of(difference: f64, [less, more, same]: [&str; 3]) -> String {
     }
 }
 
-/// Describes the interval of a change and the number of pairs, and states whether they prove a difference.
+/// Describes the interval of a change and the number of pairs. If the interval includes zero, states that the pairs
+/// prove no difference.
 fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutPair) -> String {
     let pairs = variants(pair);
     let Some([low, high]) = change.interval.map(|both| both.map(|bound| scale * bound)) else {
@@ -160,7 +161,7 @@ fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutP
     }
 }
 
-/// Describes the variants that two layouts have in common, such as "the same 8 variants".
+/// Describes the variants in which two layouts are compared, such as "the same 8 variants".
 fn variants(pair: &LayoutPair) -> String {
     match (pair.variants, pair.same_draws) {
         (1, _) => "one variant".to_owned(),
