@@ -417,7 +417,7 @@ pub fn counted(cases: &[Case]) -> Vec<&Case> {
     cases.iter().filter(|case| case.valid && (case.variant > 0 || !varied)).collect()
 }
 
-/// Returns the number of the most typical case: the one closest to the medians in three numbers, which are stacks that
+/// Returns the number of the most typical case. Three numbers of this case are closest to their medians: stacks that
 /// fall by themselves, stacks that are knocked over, and barrels that fall.
 pub fn typical(cases: &[Case]) -> Option<u32> {
     let counted = counted(cases);
@@ -607,8 +607,8 @@ fn stood(case: &Case) -> u32 {
         .unwrap_or(u32::MAX)
 }
 
-/// Returns each warning once. It begins with the name of the stack that it concerns, or with the number of these stacks
-/// if there are several.
+/// Returns each warning once, preceded by the name of the stack that it concerns, or by the number of stacks if it
+/// concerns several.
 pub(crate) fn grouped<'a>(
     warnings: impl Iterator<Item = &'a (Option<String>, String)>,
 ) -> Vec<String> {

@@ -10,8 +10,8 @@ use barrelstack_report::shortest;
 use crate::plan::{Plan, meters};
 use crate::scenario::{Block, Cellar};
 
-/// Free distance (m) between the stacks of a row in the layout with wider spacing. If it does not fit, the widest
-/// distance that fits is searched for.
+/// Free distance (m) between the stacks of a row in the layout with wider spacing. If it does not fit, a search finds
+/// the widest distance that fits.
 const WIDE: f64 = 1.0;
 
 /// Resolution of the search for the widest spacing that fits: number of distances per meter.
