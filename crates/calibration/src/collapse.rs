@@ -60,14 +60,14 @@ impl Default for Settings {
     }
 }
 
-/// Minimum relative reduction of the width of a parameter's interval, from the prior to the posterior, for the test to
-/// count as informative.
+/// The tests count as informative about a parameter if its posterior interval is narrower than its prior interval by at
+/// least this fraction.
 const INFORMATIVE: f64 = 0.15;
 
 /// Correlation above which two parameters are reported as inseparable.
 const ALIKE: f64 = 0.9;
 
-/// Posterior weight of the simulations with the observed mode, below which a warning is given.
+/// A warning is given if the simulations with the observed mode have less than this share of the posterior weight.
 const UNSEEN: f64 = 0.2;
 
 /// Observed collapses, read from a table with one row per test.
@@ -283,7 +283,8 @@ fn prepared<'a>(
     Ok(tests)
 }
 
-/// Returns the names of the barrels of a scenario that can be simulated; the check is a run of one millisecond.
+/// Returns the names of the barrels of a scenario, or an error if the scenario cannot be simulated. Both follow from a
+/// run of one millisecond.
 pub(crate) fn barrels(scenario: &Scenario) -> Result<Vec<String>, CalibrateError> {
     let mut short = scenario.clone();
     short.run.duration = Some(1e-3);

@@ -1,4 +1,4 @@
-//! Restitution and damping `c` from drop tests, which give heights or the times of impacts.
+//! Restitution and damping `c` from drop tests in which heights or the times of impacts are measured.
 
 use barrelstack::scenario::Dimension;
 use barrelstack_dynamics::contact::restitution;

@@ -19,7 +19,7 @@ const STEPS: f64 = 100.0;
 /// Speed, relative to depth × natural frequency, below which the mass counts as at rest.
 const CREEP: f64 = 1e-9;
 
-/// Computes the impact of a mass on a contact of the speed-gap law under gravity.
+/// Computes the impact of a mass, under gravity, on a contact that follows the speed-gap law.
 ///
 /// `mass` is in kg, `stiffness` in N/m, `damping` in N·s/m, `gravity` in m/s² and the impact speed `speed` in m/s.
 ///

@@ -26,7 +26,8 @@ const SHARE: f64 = 0.05;
 /// the scatter of the channels.
 const FIRST_SHARE: f64 = 0.2;
 
-/// Fraction of the root mean square of a channel, below which its residuals are taken for rounding errors.
+/// Residuals of a channel are attributed to rounding errors if their root mean square, divided by that of the recorded
+/// values, is below this.
 const ROUNDING: f64 = 1e-9;
 
 /// Correlation above which two parameters are reported as inseparable.

@@ -144,8 +144,8 @@ impl Calibration {
         lines
     }
 
-    /// Returns the result as a document for programs. All numbers are in SI units; unbounded ends of
-    /// intervals are null.
+    /// Returns the result as a machine-readable document. All numbers are in SI units; unbounded ends of intervals are
+    /// null.
     pub fn to_document(&self) -> CalibrationDocument {
         CalibrationDocument::of(self)
     }

@@ -37,7 +37,7 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
             .unsuited("one row does not show the scatter: repeat the test at least once")
             .into());
     }
-    // Vertical force (N) on a single seat with a vertical normal that gives the same sag.
+    // Vertical force (N) that gives the same sag on a single seat whose normal is vertical.
     let press: Vec<f64> = load
         .iter()
         .zip(&angle)

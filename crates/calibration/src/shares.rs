@@ -55,7 +55,7 @@ pub fn levels(statements: &[&Statement]) -> BTreeSet<usize> {
 
 /// Result of one simulated stack.
 struct Shaken {
-    /// Parameters, each between −1 and 1, which stand for the ends of the prior range.
+    /// Parameters, scaled so that −1 and 1 are the ends of the prior range.
     point: Vec<f64>,
     /// Logarithm of the factor by which the motion is multiplied, in standard deviations.
     motion: f64,
@@ -313,9 +313,9 @@ fn deviates(point: &[f64], motion: f64, height: Option<&f64>) -> Vec<f64> {
 
 /// Parameter sets, weighted by the likelihood of the statements.
 struct Weighed {
-    /// Sets with their weights; the last coordinate is the deviate of the motion.
+    /// Parameter sets with their weights. The last coordinate of a set is the random deviate of the motion.
     posterior: Posterior,
-    /// Share of each statement in every set.
+    /// For each statement, the share that the model predicts with every parameter set.
     shares: Vec<Vec<f64>>,
     /// Mean likelihood of each statement over all sets, 1 at most.
     likelihoods: Vec<f64>,

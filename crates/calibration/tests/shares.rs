@@ -43,8 +43,9 @@ fn a_share_that_fell_is_set_beside_that_of_simulated_stacks() {
         found.map(|(_, value)| value.clone()).unwrap()
     };
     let number = |text: &str| text.split(' ').next().unwrap().parse::<f64>().unwrap();
-    // Measured: 60 to 100 % of the stacks fall before, 86 to 100 and 2 to 39 % given the statements; the model does not
-    // explain that few fell, and says so; the motion was weaker then (0.88 against 1.02 times that of the scenario).
+    // Measured: without a statement, 60 to 100 % of the stacks fall; given that most fell, 86 to 100 %; given that few
+    // fell, 2 to 39 %. The model does not explain that few fell, and a warning states this. The motion is then weaker:
+    // 0.88 times that of the scenario, in place of 1.02 times.
     let before = "60 to 100 % before, ";
     let share = |result: &Calibration| {
         let text = fact(result, "s: share by the model");

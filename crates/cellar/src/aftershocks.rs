@@ -85,7 +85,7 @@ described! {
     }
 }
 
-/// The results of a variant for every strength, in the order of the strengths.
+/// Results of one variant: one case for each aftershock strength, in the order of the strengths.
 type OfVariant = Vec<Case>;
 
 /// Runs the main shock of all variants of a cellar, and each of several aftershocks after it.
@@ -284,7 +284,8 @@ pub fn sentences(summary: &AftershockSummary) -> Vec<String> {
     all
 }
 
-/// Returns the tables of the strengths and of the stacks.
+/// Returns two tables: one with a row per aftershock strength, and one with a row per stack that stands after the main
+/// shock.
 pub fn tables(summary: &AftershockSummary) -> [Table; 2] {
     let strengths = Table::of(
         "Aftershocks after the same main shock. Numbers of stacks are means over the variants; the share of the \
@@ -332,8 +333,8 @@ pub fn tables(summary: &AftershockSummary) -> [Table; 2] {
     [strengths, stacks]
 }
 
-/// Returns, for programs, the table of the strengths and the table of every stack under every strength, with one
-/// number in each cell.
+/// Returns the same two tables in machine-readable form, with one number in each cell. The first has one row per
+/// aftershock strength; the second has one row per stack and strength.
 fn numbers(summary: &AftershockSummary) -> [Table; 2] {
     let number = |value: f64| Cell::Number(value, 6);
     let share = |one: &Strength, of: fn(&Mean) -> f64| {
@@ -415,7 +416,7 @@ pub fn document(summary: &AftershockSummary) -> Document {
     }
 }
 
-/// Returns the output files by name, with the report in a language.
+/// Returns the output files by name; the report is in the given language.
 ///
 /// # Errors
 /// If the summary cannot be written as JSON.

@@ -76,10 +76,10 @@ pub fn answer_with(
     let shown = prepared.run(number, 0, &mut |now| {
         report(Advance::Run(Progress { time: now.time, end_time: now.end_time }))
     })?;
-    // A finished case keeps its result if its repetition for the picture is stopped.
+    // If the case was finished before, its result is used even if the run that repeats it for display is stopped.
     let finished = cases.iter().find(|case| case.variant == number).cloned();
     let case = finished.unwrap_or_else(|| prepared.case(number, &shown));
-    // A run that is repeated to be shown is counted once.
+    // A case whose run is only repeated for display is not counted again.
     if cases.is_empty() && !shown.interrupted {
         cases.push(case.clone());
     }
@@ -93,9 +93,9 @@ pub fn answer_with(
     Ok(Answer { prepared, cases, case, shown, summary })
 }
 
-/// Runs one part of the variants of a cellar, and keeps their results in a folder. Returns, for the part, the number of
-/// results in the folder at the end, the number of variants whose computation failed (their results are not kept), and
-/// the number of all variants.
+/// Runs one part of the variants of a cellar, and keeps their results in a folder. Returns three numbers for this part:
+/// the results in the folder at the end, the variants whose computation failed (their results are not kept), and all
+/// variants.
 ///
 /// # Errors
 /// As for [`answer_with`].

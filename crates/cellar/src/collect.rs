@@ -135,7 +135,7 @@ fn bodies_of(of: &StackOf<'_>, stack: usize, island: &Island, member: usize) -> 
     ends.collect()
 }
 
-/// Returns the outcome of a stack, the reason for its end, and warnings.
+/// Returns the outcome of a stack, the reason why its run ended, and warnings.
 fn judged(
     world: &World<'_>,
     of: &StackOf<'_>,

@@ -312,7 +312,7 @@ impl Loss {
     }
 }
 
-/// Returns the losses of a layout in the variants that the statistics count, by the number of the variant.
+/// Returns the losses of a layout in the variants that the statistics count, by variant number.
 fn losses(layout: &Layout) -> BTreeMap<u32, Loss> {
     let of = |case: &&Case| (case.variant, Loss::of(case, &layout.summary));
     counted(&layout.cases).iter().map(of).collect()
@@ -417,8 +417,8 @@ fn pair(first: &Layout, second: &Layout, others: usize) -> LayoutPair {
     }
 }
 
-/// Returns the numbers of the variants of two layouts that are not counted in both. The room as stated counts as a
-/// variant only in a layout without other variants.
+/// Returns the numbers of the variants that are left out of the comparison of two layouts, because the statistics of at
+/// least one layout do not count them. The room as stated counts as a variant only in a layout without other variants.
 fn left_out(layouts: [&Layout; 2], losses: [&BTreeMap<u32, Loss>; 2]) -> Vec<u32> {
     let of = |layout: &Layout| -> BTreeSet<u32> {
         let varied = layout.cases.iter().any(|case| case.variant > 0);

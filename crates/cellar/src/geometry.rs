@@ -34,7 +34,7 @@ impl Convex {
                 }
                 hull.push(point);
             }
-            // The last point of one half is the first of the other.
+            // The last point of each half of the hull is also the first point of the other half.
             hull.pop();
         };
         turn(&mut points.iter().copied(), &mut hull);

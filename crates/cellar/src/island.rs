@@ -58,7 +58,7 @@ pub(crate) struct Fixed {
     pub(crate) simulation: Simulation,
 }
 
-/// Record of the contacts between two parties.
+/// Record of the contacts between two parties, each a stack or an obstacle.
 #[derive(Clone, Debug)]
 pub(crate) struct Contact {
     pub(crate) time: f64,
@@ -80,11 +80,11 @@ pub(crate) struct Watch {
     /// First contact with a body of another stack: time, own body, other body.
     pub(crate) touched: Option<(f64, BodyId, StackBody)>,
     pub(crate) touched_obstacle: Option<(f64, usize)>,
-    /// Impulse (N·s) that other stacks exert until the first loss of seat.
+    /// Impulse (N·s) that other stacks exert on the stack until its first loss of seat.
     pub(crate) impulse: f64,
 }
 
-/// State of an island that changes in a run. A copy of the state lets the island return to the start of a window.
+/// The part of an island that changes during a run. A copy of it lets the island return to the start of a time window.
 #[derive(Clone, Debug)]
 pub(crate) struct Live {
     pub(crate) running: Running,
@@ -92,7 +92,7 @@ pub(crate) struct Live {
     pub(crate) contacts: BTreeMap<[PartyId; 2], Contact>,
     pub(crate) ending: Option<Ending>,
     pub(crate) failure: Option<RunError>,
-    /// Lengths of the logs of the island at this state. When the island returns to the state, its logs are cut to these
+    /// Lengths of the island's logs in this state. When the island returns to this state, its logs are cut to these
     /// lengths.
     kept: Vec<usize>,
     /// For every body, the largest distance (m) from its pose at the start of the window.
@@ -152,7 +152,7 @@ pub(crate) struct Island {
     pub(crate) fixed: Fixed,
     pub(crate) live: Live,
     pub(crate) logs: Logs,
-    /// Energies and work of the islands from which this one was merged.
+    /// Energy balance, up to the merge, of the islands that were merged into this one.
     pub(crate) energy_before: EnergySummary,
     pub(crate) work: Work,
     /// Time (s) between recorded frames; `None` if no frames are recorded.
@@ -382,7 +382,7 @@ impl Island {
         }
     }
 
-    /// Updates the fates of the bodies and checks whether the stacks are at rest; returns `true` if all are.
+    /// Updates the outcomes of the bodies and checks whether the stacks are at rest; returns `true` if all are.
     fn watch(&mut self) -> bool {
         let time = self.time();
         let mut rests = true;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::sample::{Case, CellarFailure, Prepared};
 
-/// A folder with the results of variants of one cellar, one file for each.
+/// A folder with results of the variants of one cellar, one file per variant.
 #[derive(Clone, Debug)]
 pub struct Kept {
     folder: PathBuf,
@@ -16,7 +16,7 @@ pub struct Kept {
     cellar_hash: String,
 }
 
-/// Layout and version of a file.
+/// Name and version of the layout of a file.
 const SCHEMA: &str = "cellar-variant/1";
 
 /// A file with the result of a variant.

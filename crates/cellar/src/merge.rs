@@ -145,7 +145,7 @@ pub(crate) fn merged(
     let mut live = Live::of(carry(&model, &drive, &sources, &carries, &simulation), Vec::new());
     let (mut energy_before, mut work) = (EnergySummary::default(), Work::default());
     for island in &islands {
-        // Energy that is stored at the merge is counted by the merged island.
+        // The merged island counts the energy that is stored at the merge, so this energy is left out here.
         let own = EnergySummary { kinetic: 0.0, elastic: 0.0, stick: 0.0, ..island.energy() };
         energy_before = plus(energy_before, &own);
         let own = island.work();

@@ -1,8 +1,8 @@
 //! Bodies of different islands that are near each other, and how far each may move before two of them can touch.
 //!
-//! The gap between two bodies is measured when it may have become small. After a measurement, the gap shrinks by at
-//! most the lengths of the paths of the two bodies, which are summed window by window. It is measured again only when
-//! these paths may have closed it.
+//! The gap between two bodies is measured when it may have become small. After a measurement, the gap can shrink by at
+//! most the distance that the two bodies travel together; this distance is summed window by window. The gap is measured
+//! again only when this distance may have closed it.
 
 use barrelstack::watch::Ending;
 use barrelstack_dynamics::join::gap_between;
@@ -21,8 +21,8 @@ const STALE: f64 = 0.1;
 /// Distance (m) that a body may move in a window if no other body is near; it corresponds to a speed of 45 m/s.
 pub(crate) const FREE: f64 = 0.09;
 
-/// Smallest gap (m) at which two islands are merged. The gap ensures that the merge comes before an impact, and does
-/// not affect the next step.
+/// Two islands are merged if the gap (m) between two of their bodies might become smaller than this in a window. The
+/// merge thus comes before an impact, and does not affect the next step.
 const SLACK: f64 = 2e-3;
 
 /// Least distance (m) that a body may move in a window, even a body at rest.
@@ -36,7 +36,7 @@ struct Couple {
     bodies: [Owner; 2],
     /// Gap (m) at the last measurement, or a lower bound of it.
     gap: f64,
-    /// Lengths (m) of the paths of the two bodies until the last measurement.
+    /// Lengths (m) of the paths of the two bodies at the last measurement of the gap.
     since: [f64; 2],
     /// Lengths (m) that the paths of the two bodies must not exceed in this window.
     limits: [f64; 2],
@@ -49,7 +49,7 @@ pub(crate) struct Nearby {
     of_body: Vec<Vec<u32>>,
     /// Length (m) of the path of every body since the start; it grows while the body is in the list.
     paths: Vec<f64>,
-    /// Positions (m) in the room for which the list was made.
+    /// Positions (m) of the bodies in the room when the list was made.
     made_for: Vec<Vec3>,
 }
 
@@ -76,7 +76,7 @@ impl Nearby {
         let mut places = self.made_for.clone();
         places.resize(world.count, Vec3::default());
         for island in islands.iter().flatten() {
-            // The numbers of a failed island may not be finite.
+            // A failed island may contain numbers that are not finite.
             if island.live.ending == Some(Ending::Broken) && !self.made_for.is_empty() {
                 continue;
             }

@@ -19,14 +19,14 @@ const ENTRY: f64 = PASSAGE;
 /// Depth (m) of the rectangles that stand for doors in a drawing.
 const LEAF: f64 = 0.12;
 
-/// Shape of the stacks with one number of levels.
+/// Shape of all stacks that have the same number of levels.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Footprint about the origin of the stack.
+    /// Footprint relative to the origin of the stack.
     pub footprint: Convex,
     /// The stack as stated, before it settles.
     pub stack: Stack,
-    /// Points (m) of the surface of every body, in its body frame, in the order of the bodies without the ground.
+    /// For every body except the ground: points (m) of its surface, in the body frame.
     pub surfaces: Vec<Vec<Vec3>>,
     /// Number of barrels.
     pub barrels: usize,
@@ -66,7 +66,8 @@ pub struct Plan {
     pub stacks: Vec<Standing>,
     /// Footprints of the stacks.
     pub footprints: Vec<Convex>,
-    /// Problems that prevent a run, each with its place in the file and the stacks that are wrongly placed.
+    /// Problems that prevent a run, each with its place in the file and the indices of the stacks that are wrongly
+    /// placed.
     pub problems: Vec<(ScenarioError, Vec<usize>)>,
     /// Summary of the plan.
     pub summary: PlanSummary,
@@ -494,7 +495,8 @@ fn columns(cellar: &Cellar, stacks: &[Standing], footprints: &[Convex], problems
     }
 }
 
-/// Returns two opposite corners of the floor in front of a door, to a depth (m) inside the room.
+/// Returns two opposite corners of the floor area in front of a door. The area is as wide as the door, and reaches to a
+/// depth (m) inside the room.
 pub(crate) fn opening(room: &RoomSpec, door: &Door, depth: f64) -> [Point; 2] {
     let [a, b] = [door.position - 0.5 * door.width, door.position + 0.5 * door.width];
     match door.side {
@@ -577,7 +579,8 @@ impl Obstacles<'_> {
             .collect()
     }
 
-    /// Marks as taken the floor next to bodies and columns that the middle of a person cannot reach.
+    /// Marks as taken all floor that is closer to a body or a column than half the width of a person, since the middle
+    /// of a person cannot be there.
     fn take_from(&self, grid: &mut Grid) {
         let half = 0.5 * PASSAGE;
         for polygon in &self.taken {
@@ -648,8 +651,8 @@ impl Obstacles<'_> {
     }
 }
 
-/// Returns the interval in which a polygon is cut by the line that crosses `axis` at right angles, at the coordinate
-/// `at`.
+/// Returns the interval that a polygon covers on the line perpendicular to `axis` at the coordinate `at`; `None` if the
+/// line does not meet the polygon.
 fn section(polygon: &Convex, axis: usize, at: f64) -> Option<[f64; 2]> {
     let across = 1 - axis;
     let corners = polygon.corners();

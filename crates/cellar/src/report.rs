@@ -393,7 +393,7 @@ fn obstacles(summary: &CellarSummary) -> Table {
 }
 
 impl Answer {
-    /// Returns the output files by name, with the report in a language.
+    /// Returns the output files by name; the report is in the given language.
     ///
     /// # Errors
     /// If the summary cannot be written as JSON.
@@ -439,7 +439,7 @@ impl Answer {
     }
 }
 
-/// Returns the table of all stacks in all shocks with one number in each cell, for programs.
+/// Returns the machine-readable table of all stacks in all shocks, with one number in each cell.
 fn shocks_csv(summary: &CellarSummary) -> Table {
     let stacks = |shock: &ShockAnswer| {
         let shock = shock.clone();
@@ -461,7 +461,7 @@ fn shocks_csv(summary: &CellarSummary) -> Table {
     )
 }
 
-/// Returns the table of all stacks with one number in each cell, for programs.
+/// Returns the machine-readable table of all stacks, with one number in each cell.
 fn stacks_csv(summary: &CellarSummary) -> Table {
     let number = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::Number(value, 6));
     let low_high = |count: &Count, which: usize| Cell::Number(count.interval[which], 6);

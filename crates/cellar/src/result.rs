@@ -23,15 +23,15 @@ pub struct BodyEnd {
     pub level: u32,
     /// Volume (m³) of the wine in a barrel.
     pub wine: f64,
-    /// Fate, with displacements along the axes of the stack.
+    /// Outcome of the body; its displacements are along the axes of the stack.
     pub fate: Fate,
     /// Pose at rest before the shaking, in the room: position (m) and quaternion `w`, `x`, `y`, `z`.
     pub from: [f64; 7],
-    /// Pose at the start of the run, in the room: equal to `from` unless the stack has another start.
+    /// Pose at the start of the run, in the room: equal to `from` if the stack starts as built.
     pub start: [f64; 7],
     /// Pose at the end, in the room.
     pub to: [f64; 7],
-    /// Pose at the end in the frame of its stack, from which another run may start.
+    /// Pose at the end, in the frame of its stack. Another run may start from this pose.
     pub own: [f64; 7],
 }
 
@@ -56,13 +56,13 @@ pub struct StackEnd {
     pub name: String,
     /// Outcome, as for a stack alone.
     pub outcome: Outcome,
-    /// Time (s) of the first loss of seat, and the body by its index in [`RoomRun::bodies`].
+    /// Time (s) of the first loss of seat, and index of the body in [`RoomRun::bodies`].
     pub lost_seat: Option<(f64, usize)>,
     /// Time (s) at which the first barrel counted as fallen.
     pub first_fall: Option<f64>,
     /// First contact with a body of another stack.
     pub touched: Option<Touch>,
-    /// Time (s) of the first contact with an obstacle, and the obstacle.
+    /// Time (s) of the first contact with an obstacle, and index of the obstacle in [`RoomRun::obstacles`].
     pub touched_obstacle: Option<(f64, usize)>,
     /// `true` if a body of another stack touched the stack before it lost its first seat.
     pub knocked_over: bool,
@@ -110,7 +110,7 @@ pub struct Meeting {
 pub struct ObstacleEnd {
     /// Name of the obstacle.
     pub name: String,
-    /// Time (s) of the first contact, and the body by its index in [`RoomRun::bodies`].
+    /// Time (s) of the first contact, and index of the body in [`RoomRun::bodies`].
     pub first: Option<(f64, usize)>,
     /// Largest total force (N).
     pub peak: f64,

@@ -20,8 +20,8 @@ pub struct Placed {
     /// Poses from which the stack starts, in the order of its bodies, without the ground; `None` to start as built. A
     /// pose is the position of the center of mass (m) and the quaternion `w`, `x`, `y`, `z`, both in the frame of the
     /// stack and relative to the ground, as in [`BodyEnd::own`](crate::BodyEnd::own). The bodies start at rest. A loss
-    /// of seat is still judged by the places as built, so a seat that was lost before the run counts as lost at time
-    /// zero.
+    /// of seat is still judged relative to the places as built, so a seat that was lost before the run counts as lost
+    /// at time zero.
     pub start: Option<Vec<[f64; 7]>>,
     /// `true` if an earlier run of the same room ended in the poses of `start`. Bodies may then overlap by any depth,
     /// because loads press them into each other. In stated poses, an overlap is an error.
@@ -106,7 +106,7 @@ pub struct Settings {
 /// Maximum number of bodies.
 pub const MOST_BODIES: u64 = 30_000;
 
-/// Error of a room.
+/// Reason why a room cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum RoomFailure {
     /// There is no stack.
@@ -181,8 +181,8 @@ pub enum RoomFailure {
         /// Number of bodies.
         bodies: usize,
     },
-    /// Bodies of two stacks, or a body and an obstacle, overlap at the start. In a stack that does not start as built,
-    /// also two bodies of the same stack.
+    /// Bodies of two stacks, or a body and an obstacle, overlap at the start. The error also covers two bodies of the
+    /// same stack if the stack does not start as built.
     #[error(
         "\"{first}\" and \"{second}\" overlap by {:.1} mm before the ground moves: move them apart",
         1e3 * depth

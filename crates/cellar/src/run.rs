@@ -32,7 +32,7 @@ const PATIENCE: Duration = Duration::from_millis(500);
 /// Progress of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Advance {
-    /// Simulated time (s) that all stacks have reached or at which they rest.
+    /// Simulated time (s) that all moving stacks have reached; `end_time` if no stack moves.
     pub time: f64,
     /// Latest simulated time (s) at which the run can end.
     pub end_time: f64,
@@ -40,7 +40,7 @@ pub struct Advance {
     pub moving: usize,
 }
 
-/// Runs a room to rest.
+/// Runs a room until all stacks are at rest or the duration of the run is over.
 ///
 /// After all stacks have settled, the observer receives the progress between windows, about twice a second, and may stop
 /// the run; the results until then are returned.
@@ -168,7 +168,7 @@ impl<'a> Running<'a> {
             .filter(|island| island.is_awake())
             .map(Mutex::new)
             .collect();
-        // The largest first, since threads take them in order.
+        // The largest islands come first, because threads take the tasks in order.
         tasks.sort_by_key(|task| {
             task.lock().map_or(0, |island| usize::MAX - island.fixed.owners.len())
         });
@@ -233,7 +233,7 @@ impl<'a> Running<'a> {
 
     /// Merges the islands and obstacles of all meetings; returns the merged islands.
     fn merge_all(&mut self, meetings: &[[Owner; 2]]) -> Result<Vec<usize>, RoomFailure> {
-        // Every island points to an island of its group, the first of the group to itself.
+        // Every island points to an island of its group; the first island of a group points to itself.
         let mut group: Vec<usize> = (0..self.islands.len()).collect();
         let mut obstacles: Vec<(usize, usize)> = Vec::new();
         for [one, other] in meetings {
@@ -295,7 +295,8 @@ impl<'a> Running<'a> {
         }
         for number in goes_on {
             if let Some(island) = &mut self.islands[number] {
-                // An island that has rested for some time has moved along with the ground until now.
+                // An island that has rested for more than a window is first carried along with the ground to the
+                // present time.
                 if island.time() < now - WINDOW {
                     island.advance_to(world, now);
                 }

@@ -28,7 +28,7 @@ use crate::scenario::{Cellar, Standing};
 use crate::sequence::{after, can_continue, joined};
 use crate::start::{StackStart, starts};
 
-/// Error of a cellar that is to be run.
+/// Reason why a cellar cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum CellarFailure {
     /// The plan is wrong.
@@ -65,7 +65,7 @@ pub struct Prepared {
     pub plan: Plan,
     /// The ground motion along the axes of the room.
     pub ground: Ground,
-    /// Time (s) at which the shaking starts: the first at which the horizontal acceleration exceeds 0.02 g.
+    /// Time (s) at which the shaking starts: the first time at which the horizontal acceleration exceeds 0.02 g.
     pub onset: f64,
     /// The shocks of a sequence after the first.
     pub later: Vec<Later>,
@@ -81,7 +81,7 @@ pub type Observer<'a> = &'a mut dyn FnMut(&Advance) -> ControlFlow<()>;
 pub struct Later {
     /// The ground motion along the axes of the room.
     pub ground: Ground,
-    /// Time (s) of its record at which the shaking starts.
+    /// Time (s) in the record of the shock at which its shaking starts.
     pub onset: f64,
 }
 
@@ -180,7 +180,7 @@ impl Prepared {
         drawn(&stack, variant)
     }
 
-    /// Runs a variant with frames.
+    /// Runs a variant and records its frames.
     ///
     /// # Errors
     /// If a stack cannot be built or does not stand.
@@ -194,7 +194,7 @@ impl Prepared {
         self.continued(room, first, threads, observer)
     }
 
-    /// Runs the first shock of a variant with frames, and returns its room as well.
+    /// Runs the first shock of a variant and records its frames. Returns the room of the variant and the run.
     ///
     /// # Errors
     /// As for [`Prepared::run`].
@@ -268,8 +268,8 @@ impl Prepared {
         Ok(check_kept((2.0 * frames, bodies, 8), (0.0, 0))?)
     }
 
-    /// Returns the failure of a room as an error at the entry of the file that states where the affected stack
-    /// starts.
+    /// Converts an overlap of bodies to an error that points to the entry of the file that states where one of the two
+    /// stacks starts. Other failures are returned unchanged.
     fn placed(&self, failure: RoomFailure) -> CellarFailure {
         let RoomFailure::Overlap { first, second, depth } = &failure else {
             return failure.into();
@@ -530,7 +530,7 @@ fn onset(ground: &Ground) -> f64 {
     0.0
 }
 
-/// Returns walls and columns.
+/// Returns the walls and columns of a room as obstacles.
 fn obstacles(cellar: &Cellar) -> Result<Vec<Obstacle>, CellarFailure> {
     let room = &cellar.room;
     let stated = cellar.stated().stack().map(|stack| stack.interfaces.barrel_ground);
@@ -625,7 +625,8 @@ pub struct StackCase {
     pub fell_at: Option<f64>,
     /// `true` if the stack falls after a body of another stack touched it.
     pub knocked: bool,
-    /// Time (s), index of the other stack, and impulse (N·s) of the first contact with another stack.
+    /// First contact with another stack: time (s), index of the other stack, and impulse (N·s) that other stacks exert
+    /// until the first loss of seat ([`Touch::impulse`](crate::Touch::impulse)).
     pub touched: Option<(f64, usize, f64)>,
     /// Names of the two bodies of the first contact: the body of this stack, and that of the other stack.
     pub touching: Option<[String; 2]>,
@@ -655,8 +656,8 @@ pub struct AisleCase {
     pub fastest: Option<f64>,
     /// Share of the area of the aisle that is covered at the end.
     pub covered: f64,
-    /// Time (s), counted from the start of the shaking, from which no path of the width of a person leads through the
-    /// aisle any more.
+    /// Time (s), counted from the start of the shaking, from which no path as wide as a person leads through the aisle
+    /// any more.
     pub blocked_at: Option<f64>,
 }
 

@@ -26,7 +26,7 @@ use crate::start::{START, StartSpec};
 
 /// A length of at most a kilometer.
 const LENGTH: Kind = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1000.0));
-/// A free distance.
+/// A distance from zero to a kilometer.
 const APART: Kind = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1000.0));
 
 named! {
@@ -305,7 +305,7 @@ pub struct Cellar {
     pub doors: Vec<Door>,
     /// Aisles.
     pub aisles: Vec<Aisle>,
-    /// Places of people.
+    /// Places where people work.
     pub places: Vec<Place>,
     /// Blocks of stacks.
     pub blocks: Vec<Block>,

@@ -66,7 +66,7 @@ impl StartSpec {
         self.file.is_none() && self.shifts.is_empty()
     }
 
-    /// Reads the file into memory. A file that cannot be read is an error of the plan.
+    /// Reads the file into memory. If the file cannot be read, the plan reports the error.
     pub(crate) fn hold(&mut self) {
         if let Some(file) = &mut self.file
             && let Ok(bytes) = file.read(LIMIT)
@@ -112,8 +112,8 @@ pub(crate) struct StackStart {
     pub(crate) shifts: Vec<Shift>,
     /// Path, in the scenario, of the last entry that moves the stack.
     pub(crate) path: String,
-    /// Line of the file of places with the last row that moves the stack; `None` if the last entry is in the
-    /// scenario.
+    /// In the file of starting places, the line of the last row that moves the stack; `None` if the last entry is in
+    /// the scenario.
     pub(crate) line: Option<usize>,
 }
 
@@ -165,7 +165,8 @@ fn own_shift(standing: &Standing, body: Option<usize>, [x, y, z]: [f64; 3], turn
     Shift { body, by: [cos * x + sin * y, cos * y - sin * x, z], turn }
 }
 
-/// Returns the end of a message that names the most similar of the valid names, or some of them.
+/// Returns the end of an error message about an unknown name. It suggests the most similar valid name; if none is
+/// similar, it states the first and the last valid name.
 fn valid(word: &str, known: &[&str]) -> String {
     match nearest(word, known) {
         Some(near) => format!("did you mean \"{near}\"?"),
@@ -198,7 +199,7 @@ pub(crate) const POSE: [&str; 7] = ["x (m)", "y (m)", "z (m)", "qw", "qx", "qy",
 /// Columns of shifts.
 const SHIFTED: [&str; 4] = ["dx (m)", "dy (m)", "dz (m)", "turn (deg)"];
 
-/// Largest coordinate (m) of a pose, and largest displacement.
+/// Largest coordinate of a pose, and largest displacement (m).
 const FAR: f64 = 1000.0;
 
 /// Returns the cells of a line of a CSV file.
@@ -288,7 +289,7 @@ impl Row<'_> {
     }
 }
 
-/// Poses of the bodies of a stack, and the line of the file with the last of them.
+/// Poses of the bodies of a stack, by body index, and the line of the file that states the last of these poses.
 type Posed = (BTreeMap<usize, [f64; 7]>, usize);
 
 /// Reads a file of shifts or poses; an error states the line.

@@ -357,7 +357,7 @@ described! {
 }
 
 impl Count {
-    /// Counts variants.
+    /// Counts the cases for which `is` returns `true`.
     pub fn of<'a>(cases: &[&'a Case], is: impl Fn(&'a Case) -> bool) -> Self {
         let of_variants =
             u32::try_from(cases.iter().filter(|case| is(case)).count()).unwrap_or(u32::MAX);
@@ -396,7 +396,7 @@ fn range(values: impl Iterator<Item = f64>) -> Range {
     Range::of(values).unwrap_or(zero)
 }
 
-/// Returns the numbers of stacks of a case that fall by themselves and that are knocked over.
+/// Returns two numbers of stacks in a case: those that fall by themselves, and those that are knocked over.
 pub fn fallen(case: &Case) -> [u32; 2] {
     let count = |is: &dyn Fn(&StackCase) -> bool| {
         u32::try_from(case.stacks.iter().filter(|stack| is(stack)).count()).unwrap_or(u32::MAX)
@@ -404,7 +404,7 @@ pub fn fallen(case: &Case) -> [u32; 2] {
     [count(&StackCase::by_itself), count(&|stack| stack.knocked)]
 }
 
-/// Returns the stack of a case that falls first.
+/// Returns the index of the stack that falls first in a case; `None` if no stack falls.
 fn first(case: &Case) -> Option<usize> {
     let times = case.stacks.iter().enumerate();
     let times = times.filter_map(|(at, stack)| Some((stack.fell_at?, at)));
@@ -417,8 +417,8 @@ pub fn counted(cases: &[Case]) -> Vec<&Case> {
     cases.iter().filter(|case| case.valid && (case.variant > 0 || !varied)).collect()
 }
 
-/// Returns the number of the case that is most typical: its numbers of stacks that fall by themselves and that are
-/// knocked over, and of barrels that fall, are nearest to their medians.
+/// Returns the number of the most typical case. Three numbers of this case are closest to their medians: stacks that
+/// fall by themselves, stacks that are knocked over, and barrels that fall.
 pub fn typical(cases: &[Case]) -> Option<u32> {
     let counted = counted(cases);
     let numbers = |case: &Case| {
@@ -511,7 +511,8 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
     summary
 }
 
-/// Returns the sources of the motions of all shocks, each once, and those of the places from which bodies start.
+/// Returns sentences on the sources of the motions of all shocks, each sentence once, and on the source of the places
+/// from which bodies start.
 pub(crate) fn provenance(prepared: &Prepared) -> Vec<String> {
     let mut all = prepared.ground.provenance();
     for step in prepared.later.iter().flat_map(|later| later.ground.provenance()) {
@@ -606,7 +607,8 @@ fn stood(case: &Case) -> u32 {
         .unwrap_or(u32::MAX)
 }
 
-/// Returns each warning once, with the stacks that it concerns in place of the name of one stack.
+/// Returns each warning once, preceded by the name of the stack that it concerns, or by the number of stacks if it
+/// concerns several.
 pub(crate) fn grouped<'a>(
     warnings: impl Iterator<Item = &'a (Option<String>, String)>,
 ) -> Vec<String> {
@@ -656,7 +658,7 @@ fn stacks(prepared: &Prepared, all: &[&Case]) -> Vec<StackAnswer> {
         for (_, by, _) in own().filter_map(|stack| stack.touched) {
             *touched.entry(by).or_default() += 1;
         }
-        // Of equal counts, the stack that comes first.
+        // If several stacks have the same count, the first of them is chosen.
         let most = touched.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0)));
         let [lower, upper] = plan.footprints[at].bounds();
         StackAnswer {

@@ -69,7 +69,7 @@ pub(crate) fn longest_cut<'a>(shocks: impl Iterator<Item = &'a ShockAnswer>) -> 
     Some(cut).filter(|cut| *cut > 0.0)
 }
 
-/// Returns the sentence which states that the run of a shock ends the time `cut` (s) before its motion.
+/// Returns the sentence that states by how much time, `cut` (s), the run of a shock ends before its motion.
 pub(crate) fn followed(cut: f64) -> String {
     format!("The run of a shock ends {cut:.1} s before its motion does.")
 }
@@ -85,8 +85,8 @@ fn standing(summary: &CellarSummary) -> usize {
     summary.plan.stacks - summary.shown.fallen_before as usize
 }
 
-/// Returns a clause on the variants in which a stack falls, to follow the statement that none falls in the run that is
-/// shown; empty if there are no such variants.
+/// Returns a clause on the variants in which a stack falls; empty if there are none. The clause follows the statement
+/// that no stack falls in the run that is shown.
 fn but_some_fall(summary: &CellarSummary) -> String {
     match summary.room.some_fall.of_variants {
         0 => String::new(),
@@ -265,7 +265,8 @@ fn barrels_fall(barrels: &Range, of: u32) -> String {
     }
 }
 
-/// Returns the variants in which all stacks that stand before a shock survive it, out of those in which any stands.
+/// Returns a phrase on the number of variants in which all stacks that stand before a shock survive it, out of the
+/// variants in which at least one stack stands.
 fn survived(shock: &ShockAnswer) -> String {
     match shock.stood_in {
         1 => format!("{} of 1 variant", shock.all_survive.of_variants),
@@ -461,7 +462,7 @@ pub(crate) fn failed(count: usize) -> Option<String> {
     }
 }
 
-/// Returns the sentence on the stacks that fall over all variants.
+/// Returns the sentence that states, over all variants, how many stacks fall.
 fn falls(summary: &CellarSummary) -> String {
     let CellarSummary { room, counted: of, plan, .. } = summary;
     let all = standing(summary);
@@ -520,7 +521,7 @@ fn of_aisle(aisle: &AisleAnswer, of: u32) -> String {
     )
 }
 
-/// Returns a range of a share over a number of variants.
+/// Formats the range of a share over a number of variants, in percent.
 pub(crate) fn span_of_shares(range: &Range, of: u32) -> String {
     let [low, high] = range.stated(of).map(percent);
     if low == high { low } else { format!("{low} to {high}") }

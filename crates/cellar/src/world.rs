@@ -62,7 +62,7 @@ pub(crate) struct World<'a> {
     pub(crate) count: usize,
 }
 
-/// Rounding (m) of the edges of an obstacle.
+/// Radius (m) of the rounded edges of an obstacle.
 const ROUNDING: f64 = 0.01;
 
 impl<'a> World<'a> {
@@ -164,7 +164,7 @@ impl<'a> World<'a> {
 /// into each other.
 pub(crate) const PRESSED: f64 = 5.0 * ALLOWED;
 
-/// Largest depth (m) by which a shift may deepen the deepest overlap of a stack at rest.
+/// Largest increase (m) of the deepest overlap of a stack at rest that shifts may cause.
 const DEEPENED: f64 = 0.5 * ALLOWED;
 
 /// Moves the bodies of a stack to the poses from which it starts, at rest and without contact history.

@@ -21,6 +21,6 @@ fn merged_without_contact_each_stack_moves_as_alone() {
         }
     }
     println!("largest difference after the merge {most:e} m");
-    // Positions are in the frame of the first stack, so they are rounded otherwise: measured 7e-14.
+    // Positions are in the frame of the first stack, so their rounding errors differ: measured 7e-14.
     assert!(most < 1e-11, "{most:e}");
 }

@@ -61,7 +61,7 @@ fn numbers_are_those_of_the_runs_and_differences_those_of_their_variants() {
         let near = |own: f64, run: f64| assert!((own - run).abs() < 1e-9, "{own} {run}");
         near(own.by_themselves.mean, number(&room["by_themselves"]));
         near(own.knocked_over.mean, number(&room["knocked_over"]));
-        // The interval of a share of the stacks, for their number.
+        // The interval of the number of stacks is that of the share, multiplied by the two stacks.
         for end in [0, 1] {
             let share = number(&room["share_by_themselves"]["interval"][end]);
             near(own.by_themselves.interval.unwrap()[end], 2.0 * share);
@@ -81,7 +81,7 @@ fn numbers_are_those_of_the_runs_and_differences_those_of_their_variants() {
         assert_eq!(own.aisles.len(), 1);
         assert_eq!(own.some_blocked.unwrap(), answer.summary.aisles[0].blocked);
     }
-    // Means of the differences of the same variants.
+    // A change is the mean of the differences between the layouts, variant by variant.
     let [first, second] = answers().each_ref().map(|answer| {
         let fallen = |case: &barrelstack_cellar::sample::Case| {
             (case.variant > 0)
@@ -118,7 +118,7 @@ fn the_effect_comes_first_and_every_number_is_said_once_computed() {
     let sentences = words::sentences(&found).join(" ");
     assert!(sentences.contains("of 8 barrels") && sentences.contains("US$"), "{sentences}");
     assert!(sentences.contains("Runs end before their motion does"), "{sentences}");
-    // Tables list the layouts by the share that falls, the file with all digits.
+    // Tables list the layouts by the share of barrels that fall; the CSV file has all digits.
     let order: Vec<&str> = found.ranked().iter().map(|(one, _)| one.name.as_str()).collect();
     let shares: Vec<f64> = found.ranked().iter().map(|(one, _)| one.share_lost.mean).collect();
     assert!(shares.is_sorted(), "{shares:?}");
@@ -179,7 +179,7 @@ fn stopped_work_has_no_verdict_and_variants_without_a_result_have_no_pair() {
     assert_eq!((pair.variants, &pair.left_out), (2, &vec![2]));
     let said = words::sentences(&found(&layouts)).join(" ");
     assert!(said.contains("1 variant has no valid result"), "{said}");
-    // No variant is left.
+    // No variant of the second layout is valid.
     layouts[1].cases.iter_mut().for_each(|case| case.valid = false);
     layouts[1].summary.counted = 0;
     let none = found(&layouts);
@@ -204,7 +204,7 @@ fn other_motions_are_said_first_and_other_draws_beside_the_variants() {
     let found = found(&layouts);
     assert!(found.headline.starts_with("The motions differ"), "{}", found.headline);
     assert!(found.headline.contains("3 variants with different draws"), "{}", found.headline);
-    // More variants alone are the same draws.
+    // If only the number of variants differs, the draws count as the same.
     layouts[1].cellar = cellar(&[]).with_variants(9);
     let pair = &compared(&layouts, Vec::new(), Vec::new()).paired[0];
     assert!(pair.same_draws && pair.same_motion);
@@ -247,7 +247,7 @@ fn usual_changes_fit_or_say_why_not() {
         let count = one.changed.as_ref().unwrap().stated().imperfections().unwrap().variants;
         assert_eq!(count, 3, "{}", one.name);
     }
-    // A room that is too short for 1 m, in which stacks that are turned do not fit, and of one level.
+    // Rooms that are too short for a spacing of 1 m or too narrow for turned stacks, and stacks of one level.
     let reason = |changes: &[&str], at: usize| {
         usual(&cellar(changes)).swap_remove(at).changed.err().unwrap_or_default()
     };
@@ -283,7 +283,7 @@ fn what_was_not_run_is_listed_with_its_reason() {
     let lines = table(&found).to_lines();
     assert_eq!(lines.len(), 5);
     assert!(lines[4].ends_with("not run: it does not fit"), "{lines:?}");
-    // Of several differences each interval is wider, so that they hold together.
+    // With several differences, each interval is wider, so that all of them hold jointly.
     let width = |found: &CellarComparison| {
         let [low, high] = found.paired[0].barrels_fallen.interval.unwrap();
         high - low

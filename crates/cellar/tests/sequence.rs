@@ -47,7 +47,7 @@ fn every_shock_counts_once_and_the_whole_is_the_sum_of_its_shocks() {
     let [first, second] = &summary.shocks[..] else { panic!("{:?}", summary.shocks) };
     assert_eq!(first.stood, 2.0);
     assert!((second.stood - (2.0 - first.by_themselves - first.knocked_over)).abs() < 1e-12);
-    // A variant in which no stack stands before a shock is none in which all survive it.
+    // A variant in which no stack stands before a shock does not count as one in which all survive it.
     for shock in [first, second] {
         let expected = f64::from(shock.all_survive.of_variants) / f64::from(shock.stood_in);
         assert!(shock.stood_in <= summary.counted);
@@ -70,7 +70,7 @@ fn every_shock_counts_once_and_the_whole_is_the_sum_of_its_shocks() {
     let files = answer.files(Language::English).unwrap();
     let (_, csv) = files.iter().find(|(name, _)| name == "shocks.csv").unwrap();
     assert_eq!(String::from_utf8_lossy(csv).lines().count(), 1 + 2 * 2);
-    // The clock of the whole runs on.
+    // The clock of the joined run continues from shock to shock.
     let run = &answer.shown;
     let ends: f64 = run.shocks.iter().map(|shock| shock.end_time).sum();
     assert_eq!((run.shocks.len(), run.end_time), (2, ends));
@@ -78,7 +78,7 @@ fn every_shock_counts_once_and_the_whole_is_the_sum_of_its_shocks() {
         assert!(frames.times.is_sorted());
         assert_eq!(frames.times.len(), frames.poses.len());
     }
-    // Bodies start the second shock where the first has left them, and end it where the whole ends.
+    // Bodies start the second shock where the first has left them, and end it where the joined run ends.
     for (at, body) in run.bodies.iter().enumerate() {
         let [one, two] = [&run.shocks[0].bodies[at], &run.shocks[1].bodies[at]];
         assert_eq!((one.to, two.to, one.from), (two.start, body.to, body.from));
@@ -235,7 +235,7 @@ fn aftershocks_of_several_strengths_follow_one_main_shock() {
         aftershocks::aftershocks(&stated, &[0.5, 1.0], None, &mut |_| ControlFlow::Continue(()))
             .unwrap();
     assert_eq!((found.counted, found.stacks, found.aftershocks.len()), (2, 2, 2));
-    // Every strength has the answer of the sequence that it is.
+    // The answer for each strength is that of the sequence with this aftershock.
     for one in &found.aftershocks {
         let sequence = stated.clone().with_aftershock(one.factor, None).unwrap();
         let alone = answered(&sequence, RunChoice::Typical).unwrap().summary;
@@ -328,7 +328,7 @@ fn contacts_that_press_from_the_start_are_in_the_energy_balance() {
     // 2 mm deep.
     room.stacks[1].at[0] -= 0.302;
     let energy = run_room(&room, &settings, on).unwrap().energy.unwrap();
-    // Measured 1.9e-3, and 1.2e-4 with a fifth of the step: the rest is that of the step. Without the forces between
-    // the stacks in the first step 5.7e-3.
+    // Measured 1.9e-3, and 1.2e-4 with a fifth of the step: the residual is due to the time step. Without the forces
+    // between the stacks in the first step, it is 5.7e-3.
     assert!(energy.residual_ratio() < 3e-3, "{energy:?}");
 }

@@ -72,7 +72,7 @@ fn a_stack_that_falls_on_its_neighbors_is_the_first_and_they_are_touched() {
     }
     // measured 3.9e-7
     assert!(run.energy.unwrap().residual_ratio() < 1e-5);
-    // Threads and the order of the stacks change no bit.
+    // The result is bit-identical for any number of threads and any order of the stacks.
     assert_eq!(bits(&run), bits(&on(1, &room)));
     let mut turned = room;
     turned.stacks.reverse();
@@ -107,7 +107,8 @@ fn a_second_shock_starts_from_the_stated_displacements() {
     }
     let runs = [on(1, &second), on(2, &stated)];
     assert_eq!(bits(&runs[0]), bits(&runs[1]));
-    // On ground at rest nothing moves on from there, but for what a rack turns until its sticks bear again.
+    // On ground at rest, the bodies stay in these poses, except that a rack turns slightly until its sticking contacts
+    // bear again.
     let mut still = second;
     still.ground = still.ground.scaled(0.0);
     let run = on(2, &still);

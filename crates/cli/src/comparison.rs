@@ -4,7 +4,7 @@ use barrelstack::variants::Remedy;
 
 use crate::args::{ScenarioArgs, VariantArgs};
 
-/// Arguments of the run of the stack as it is, with which the remedy is compared.
+/// Arguments of the run without the remedy, from which the command for the comparison is made.
 pub(crate) struct Command<'a> {
     scenario: &'a ScenarioArgs,
     variants: VariantArgs,

@@ -19,11 +19,11 @@ const EVERY: Duration = Duration::from_secs(5);
 /// Time before an estimate of the total time is shown.
 const LOOKED_AT: Duration = Duration::from_secs(1);
 
-/// Share of the work that must be finished before an estimate is shown, unless the work takes long.
+/// Share of the work that must be finished before an estimate is shown; after the time [`EVERY`], less is enough.
 const SHARE: f64 = 0.02;
 
-/// Number of finished runs from which the time of the other runs is predicted, or half of all runs
-/// if that is fewer.
+/// Number of runs that must be finished before the time of the other runs is predicted; half of all runs is enough if
+/// that is fewer.
 const ENOUGH: f64 = 24.0;
 
 /// Shortest total time for which an estimate is printed.
@@ -172,12 +172,12 @@ impl Of {
     }
 }
 
-/// Returns the ratio of the remaining time to the time spent, for `open` of `all` cases; `None`
-/// before any stack is shaken.
+/// Returns the ratio of the remaining time to the time spent, when `open` of `all` cases are unfinished; `None` before
+/// any stack is shaken.
 ///
-/// Cases are expected to end early at the rate observed so far; the first cases are expected to
-/// take 0.7 of their full time. Stacks that are still settling are expected to need the settling
-/// time of the others.
+/// Cases are expected to end early at the rate observed so far. At the start, when no rate is known, each case is
+/// expected to take 0.7 of its full time. Stacks that are still settling are expected to need the settling time of the
+/// others.
 fn left(work: Work, open: f64, all: f64) -> Option<f64> {
     let rate = (work.early + 0.75) / (work.done + 1.0);
     // Close to (1 - exp(-rate)) / rate, the mean share of a case that ends early at a constant

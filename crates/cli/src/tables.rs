@@ -56,7 +56,8 @@ impl TableArgs {
         Ok(files)
     }
 
-    /// Writes the workbook of files that are in a folder, and rewrites its CSV files in the requested notation.
+    /// Reads the named files of a folder, writes a workbook of them if requested, and rewrites the CSV files in the
+    /// requested notation.
     pub(crate) fn write(self, folder: &Path, names: &[&str]) -> anyhow::Result<()> {
         if !self.xlsx && !self.decimal_comma {
             return Ok(());
@@ -85,7 +86,7 @@ pub(crate) fn write_one(path: &Path, csv: &str) -> anyhow::Result<()> {
     if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("xlsx")) {
         return store(path, csv.as_bytes());
     }
-    // The name of the other sheet is taken.
+    // The name "provenance" is that of the other sheet, so the table gets another name.
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = if stem.eq_ignore_ascii_case("provenance") { "table".into() } else { stem };
     let about = spreadsheet::provenance(&facts(), &[]);
@@ -93,7 +94,8 @@ pub(crate) fn write_one(path: &Path, csv: &str) -> anyhow::Result<()> {
     store(path, &book.with_context(|| format!("cannot write {}", path.display()))?)
 }
 
-/// Returns the workbook of the CSV files among the files of a folder; their JSON documents state the provenance.
+/// Returns a workbook with a sheet for each CSV file among the files of a folder, and a sheet with the provenance,
+/// which the JSON files state.
 fn workbook(files: &[(String, Vec<u8>)]) -> anyhow::Result<Vec<u8>> {
     let of = |ending| files.iter().filter(move |(name, _)| has_ending(name, ending));
     let documents: Vec<String> = of("json").map(|(_, bytes)| text(bytes)).collect();
@@ -121,7 +123,7 @@ fn book(_: &[(&str, &str)]) -> anyhow::Result<Vec<u8>> {
     bail!("{WITHOUT}")
 }
 
-/// Returns the program, its version and its commit.
+/// Returns the name, version and commit of the program that writes the workbook, as one labeled fact.
 fn facts() -> Vec<(String, String)> {
     let commit = env!("BARRELSTACK_COMMIT");
     let of = if commit.is_empty() { String::new() } else { format!(", commit {commit}") };

@@ -315,7 +315,8 @@ fn a_stack_that_stands_and_a_run_cut_short_say_so() {
 
 #[test]
 fn a_run_that_broke_down_is_no_verdict_and_has_a_status_of_its_own() {
-    // A step close to the critical one under dampers too strong for it, without settling, which would show it.
+    // A time step near the critical one, with dampers that are too strong for it. The stack does not settle first,
+    // because settling would already reveal this.
     let broken = [
         "--set=run.settle=false",
         "--set=run.step=0.6 ms",
@@ -459,7 +460,7 @@ fn the_demo_writes_its_report_and_may_be_repeated() {
         assert!(
             said.starts_with("Not decided, because the runs end at 1.0 s, before the motion does.")
         );
-        // The demo is in space, unless a view is given.
+        // The demo is three-dimensional unless a view is given.
         assert!(
             said.contains("None of 4 variants") && !said.contains("across the barrels"),
             "{said}"

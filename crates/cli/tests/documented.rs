@@ -1,9 +1,9 @@
 //! Every documented command line, run as it is written, document by document, from an empty folder.
 //!
-//! A document says of which files it supposes that they are there: "… stand for files of your own", with their names
-//! before it, and "Saved as `NAME`" for the block above. Nothing else is there. Lines that run longer than [`AWAIT`], and
-//! than what is left of [`PATIENCE`], are stopped with Ctrl-C and printed. For these the test shows that arguments and files
-//! are read, that the work begins, and that it ends in order when it is stopped; later failures are not observed.
+//! A document states which files it assumes to exist: "… stand for files of your own", with their names before it, and
+//! "Saved as `NAME`" for the block above. No other files exist. A line that runs longer than [`AWAIT`] and the
+//! remainder of [`PATIENCE`] is stopped with Ctrl-C and printed. For such lines, the test shows that arguments and
+//! files are read, that the work begins, and that it ends in order when it is stopped; later failures are not observed.
 
 #![cfg(unix)]
 #![allow(

@@ -194,7 +194,7 @@ fn components_are_chosen_by_azimuth() {
     let turned = &channels(&file)[0];
     let north = channels(&first).into_iter().find(|c| c["azimuth"] == 0.0).unwrap();
     assert_eq!(turned["azimuth"], 180.0);
-    // Rotated by the cosine of half a turn; measured 2e-16.
+    // The component is multiplied by the cosine of 180°; measured 2e-16.
     assert!(close(measure(turned, "pga"), measure(&north, "pga"), 1e-14));
 }
 

@@ -171,7 +171,7 @@ fn horizontals_are_turned_to_a_fault_and_to_the_fastest_direction() {
     }
     let fastest = turned("vmax");
     assert_eq!((fastest[0].0.as_str(), fastest[1].0.as_str()), ("VMAX", "VMAX-90"));
-    // Directions are tried by whole degrees, of which the true one is one.
+    // Directions are evaluated at whole degrees, and the true direction is one of them.
     assert_eq!(fastest[0].1 % 180.0, 40.0, "{fastest:?}");
     assert!(near(fastest[0].2, 1.898) && fastest[1].2 < 1e-8, "{fastest:?}"); // measured 7e-10
 

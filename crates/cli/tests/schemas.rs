@@ -1,4 +1,4 @@
-//! Every document for programs satisfies the schema that the program prints for it, in every outcome.
+//! Every JSON document satisfies the schema that the program prints for it, in every outcome.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -9,7 +9,8 @@ use std::time::Duration;
 use crate::common::{HEAD, STUDY, barrelstack, program, stderr, stdout};
 use serde_json::Value;
 
-/// A step near the critical one under dampers too strong for it, without settling, which would show it.
+/// A time step near the critical one, with dampers that are too strong for it. The stack does not settle first, because
+/// settling would already reveal this.
 const BROKEN: [&str; 5] = [
     "run",
     "candia-8-barrels",

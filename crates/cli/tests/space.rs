@@ -1,4 +1,4 @@
-//! `barrelstack run` of a stack in space: its files, its text, and its refusals.
+//! `barrelstack run` of a three-dimensional stack: its files, its text, and its refusals.
 
 use std::fs;
 
@@ -33,7 +33,7 @@ fn a_run_in_space_says_what_fell_and_whereto_and_leaves_its_files() {
     let frames = fs::read_to_string(out.join("frames.csv")).unwrap();
     // Time, and seven numbers of seven bodies.
     assert!(frames.lines().all(|line| line.split(',').count() == 50));
-    // A heading, the columns of variants, those of frames; each has a meaning.
+    // A header row, the columns of variants, and those of frames; each has a meaning.
     let columns = fs::read_to_string(out.join("columns.csv")).unwrap();
     assert_eq!(columns.lines().count(), 1 + 14 + 50, "{columns}");
     assert!(columns.lines().all(|line| !line.ends_with(',')), "{columns}");
@@ -161,7 +161,7 @@ fn a_free_scene_in_space_leaves_its_files() {
     let number = |value: &Value| value.as_f64().unwrap();
     let speed = number(&body["velocity"][0]).hypot(number(&body["velocity"][1]));
     assert!((speed - 5.0 / 7.0).abs() < 1e-4, "{speed}");
-    // A heading, and the columns of frames.
+    // A header row, and the columns of frames.
     let columns = fs::read_to_string(out.join("columns.csv")).unwrap();
     assert_eq!(columns.lines().count(), 1 + 15, "{columns}");
     assert!(columns.lines().all(|line| !line.ends_with(',')), "{columns}");
@@ -197,7 +197,7 @@ fn a_run_in_space_becomes_a_series_for_paraview() {
         let common = ["--set=run.duration=1 s", "--rate=4", "--overwrite", "-q", "--out", &place];
         let output = barrelstack([scenario, more, &common].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        // Five times, the names and the index.
+        // Five files of bodies, one per time, a file of names, and the index.
         assert!(stdout(&output).contains("paraview: 7 files"), "{}", stdout(&output));
         let index = folder.path().join("out/paraview/stack.pvd");
         assert_eq!(fs::read_to_string(index).unwrap().matches("<DataSet").count(), 5);
@@ -218,7 +218,7 @@ fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
         assert!(stderr(&output).contains(message), "{message}: {}", stderr(&output));
     }
-    // What works for stacks in space works for free scenes.
+    // What works for three-dimensional stacks also works for free scenes.
     for command in [
         &["run", "rolling-ball", "--verify"][..],
         &["render", "rolling-ball", "--only=animation", "--size=64", "--out", &place],

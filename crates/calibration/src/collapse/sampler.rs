@@ -21,7 +21,7 @@ const ROUNDS: usize = 5;
 /// the weights.
 const WIDE: f64 = 0.2;
 
-/// Minimum effective number of samples, both for a proposal and for the result. If there are fewer, the
+/// Minimum effective number of samples, both for a proposal and for the result. If the effective number is smaller, the
 /// likelihood is raised to a power below one.
 const FEWEST: f64 = 40.0;
 

@@ -9,14 +9,14 @@ use serde::Deserialize;
 /// Maximum size of a file of statements (bytes).
 const SIZE_LIMIT: usize = 1 << 20;
 
-/// Standard deviation of the error of the model itself in a share, for example because it neglects neighbors, walls
-/// and empty barrels.
+/// Standard deviation of the model error in a share. The model has such an error because it neglects, for example,
+/// neighbors, walls and empty barrels.
 pub const MODEL_ERROR: f64 = 0.10;
 
 /// Largest permitted value of [`Earthquake::motion`]; one standard deviation is then a factor of 7 up or down.
 const MOST_MOTION: f64 = 2.0;
 
-/// Error of a file of statements.
+/// Reason why a file of statements, or the choice of some of its statements, cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct StatementsError(String);
@@ -99,7 +99,7 @@ pub enum Kind {
     Few,
     /// At least one of a number of stacks fell.
     Some,
-    /// Direction of the falls.
+    /// Direction in which stacks fell; such a statement has no likelihood.
     Along,
     /// A statement that has no likelihood.
     Unusable,
@@ -178,7 +178,7 @@ impl Statements {
     /// Reads a file of statements (TOML).
     ///
     /// # Errors
-    /// If the file cannot be read, or as [`Statements::read`].
+    /// If the file cannot be read; also as for [`Statements::read`].
     pub fn load(path: &Path) -> Result<Self, StatementsError> {
         let file = path.display().to_string();
         let unreadable =
@@ -189,7 +189,7 @@ impl Statements {
         Self::read(&file, &text)
     }
 
-    /// Reads the text of a file of statements (TOML); `file` is its name in errors.
+    /// Reads the text of a file of statements (TOML); `file` is the name that error messages show.
     ///
     /// # Errors
     /// If the text is not a file of statements, a statement has no source, a statement that is used lacks a number,

@@ -140,7 +140,7 @@ fn courses(found: &CellarComparison) -> Table {
     )
 }
 
-/// Returns the table of all layouts with one number in each cell, for programs.
+/// Returns the machine-readable table of all layouts, with one number in each cell.
 pub fn csv(found: &CellarComparison) -> Table {
     let number = |value: f64| Cell::Number(value, 6);
     let count = |value: u32| number(f64::from(value));
@@ -264,7 +264,7 @@ fn provenance(layouts: &[Layout], found: &CellarComparison) -> Vec<(String, Stri
     pairs
 }
 
-/// Returns the files of a comparison besides its page, by name.
+/// Returns the files of a comparison by name, except its page.
 ///
 /// # Errors
 /// If the document cannot be written as JSON.

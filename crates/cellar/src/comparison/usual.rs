@@ -10,7 +10,8 @@ use barrelstack_report::shortest;
 use crate::plan::{Plan, meters};
 use crate::scenario::{Block, Cellar};
 
-/// Free distance (m) between the stacks of a row with which the search for a wider spacing begins.
+/// Free distance (m) between the stacks of a row in the layout with wider spacing. If it does not fit, a search finds
+/// the widest distance that fits.
 const WIDE: f64 = 1.0;
 
 /// Resolution of the search for the widest spacing that fits: number of distances per meter.
@@ -78,7 +79,7 @@ fn spaced(cellar: &Cellar) -> (String, Result<Cellar, String>) {
         Ok(wide) => return (name(WIDE), Ok(wide)),
         Err(reason) => reason,
     };
-    // All distances up to the widest spacing fit, so that it is found by bisection.
+    // If a spacing fits, all narrower ones fit as well, so bisection finds the widest.
     let (mut fits, mut too_wide) = ((least * PER_METER).floor(), WIDE * PER_METER);
     let mut widest = None;
     while too_wide - fits > 1.0 {
@@ -118,7 +119,7 @@ fn stopped(cellar: &Cellar) -> Result<Vec<String>, String> {
     if cellar.stated().stack().is_some_and(|stack| stack.devices.walking_stop.is_on()) {
         return Err("the racks have stops already".to_owned());
     }
-    // The last candidate holds racks in both horizontal directions.
+    // The stops of the last candidate hold racks in both horizontal directions.
     let stops = WalkingStops::WORDS.candidates.last();
     let overrides = stops.map(|setting| setting.overrides).unwrap_or_default();
     Ok(overrides.iter().map(|&change| change.to_owned()).collect())

@@ -79,7 +79,8 @@ fn unresolved(first: &LayoutAnswer, second: &LayoutAnswer) -> String {
     }
 }
 
-/// Returns two names as a change, such as "Spacing 1 m instead of 0.3 m" if they begin with the same words.
+/// Returns a phrase that compares two names. If they begin with the same words, these are not repeated, as in "Spacing
+/// 1 m instead of 0.3 m".
 fn instead(second: &str, first: &str) -> String {
     let [own, its] = [second, first].map(|name| name.split(' ').collect::<Vec<_>>());
     let alike = own.iter().zip(&its).take_while(|(one, two)| one == two).count();
@@ -138,7 +139,8 @@ fn words_of(difference: f64, [less, more, same]: [&str; 3]) -> String {
     }
 }
 
-/// Describes the interval of a change and the number of pairs, and states whether they prove a difference.
+/// Describes the interval of a change and the number of pairs. If the interval includes zero, states that the pairs
+/// prove no difference.
 fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutPair) -> String {
     let pairs = variants(pair);
     let Some([low, high]) = change.interval.map(|both| both.map(|bound| scale * bound)) else {
@@ -159,7 +161,7 @@ fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutP
     }
 }
 
-/// Returns the variants of a pair of layouts in words.
+/// Describes the variants in which two layouts are compared, such as "the same 8 variants".
 fn variants(pair: &LayoutPair) -> String {
     match (pair.variants, pair.same_draws) {
         (1, _) => "one variant".to_owned(),
@@ -172,12 +174,12 @@ fn on_average(variants: u32) -> &'static str {
     if variants > 1 { " on average" } else { "" }
 }
 
-/// Returns a mean number with at most one decimal.
+/// Formats a mean with at most one decimal place.
 pub(super) fn amount(value: f64) -> String {
     shortest((10.0 * value).round() / 10.0)
 }
 
-/// Returns a mean with its interval, such as "12.4 (8 to 20)".
+/// Formats a mean with its interval, such as "12.4 (8 to 20)".
 pub(super) fn estimate(one: &Estimate) -> String {
     let mean = amount(one.mean);
     one.interval.map_or_else(

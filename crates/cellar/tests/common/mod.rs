@@ -6,7 +6,7 @@ use barrelstack::Scenario;
 use barrelstack_cellar::{Placed, Room, RoomRun, Settings, run};
 use barrelstack_space::Ground;
 
-/// Returns the demo in space with changes.
+/// Returns the three-dimensional demo with changes.
 pub(crate) fn demo(changes: &[&str]) -> Scenario {
     let changes: Vec<String> =
         ["stack.view=spatial"].iter().chain(changes).map(|&change| change.to_owned()).collect();

@@ -352,7 +352,7 @@ fn parameters(fit: &[Fitted]) -> anyhow::Result<Vec<Parameter>> {
     Ok(parameters)
 }
 
-/// Adds the scenario to an error of a calibration.
+/// Adds to an error of a calibration its position in the scenario, or the name of the scenario.
 fn placed(error: CalibrateError, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     match error {
         CalibrateError::Run(failure) => super::placed(failure, scenario, args),

@@ -116,7 +116,7 @@ pub(super) fn name(names: &mut Vec<String>, given: &[String]) -> anyhow::Result<
     Ok(())
 }
 
-/// Runs all stacks, given with their arguments, and writes the comparison.
+/// Runs all stacks, each given with its arguments, and writes the comparison.
 fn stacks(
     args: &CompareArgs,
     requested: &[(String, ScenarioArgs)],
@@ -184,8 +184,8 @@ fn stacks(
     Ok(super::status(broken))
 }
 
-/// Writes the report of a single run, which is all that the comparison had finished, or at least started, when it was
-/// stopped.
+/// Writes the report of the first run, if the comparison was stopped before a second run was finished. The first run
+/// may be unfinished, too.
 fn alone(
     args: &CompareArgs,
     folder: &Folder,

@@ -18,7 +18,7 @@ use crate::progress::Progress;
 /// Name of the layout without changes.
 const AS_IT_IS: &str = "as it is";
 
-/// Runs all layouts, given with their arguments, and writes the comparison.
+/// Runs all layouts, each given with its arguments, and writes the comparison.
 pub(super) fn compare(
     args: &CompareArgs,
     requested: &[(String, ScenarioArgs)],

@@ -76,7 +76,7 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     }
 }
 
-/// Loads a scenario or a cellar from a file, standard input (`-`) or those that are built in, and applies the changes.
+/// Loads a scenario or a cellar from a file, from standard input (`-`) or by a built-in name, and applies the changes.
 ///
 /// An existing file takes precedence. If no such file exists, a name without a dot or a path
 /// separator refers to a built-in scenario.

@@ -30,7 +30,7 @@ pub(super) struct PageArgs {
 }
 
 impl PageArgs {
-    /// Checks the folder, and registers the note that finished results are kept in the folder.
+    /// Checks the folder, and sets the message for a program that is stopped: finished results are kept in the folder.
     pub(super) fn begin(&self, out: &Path) -> anyhow::Result<(RunOptions, Progress)> {
         writable(out)?;
         keeps(format!(

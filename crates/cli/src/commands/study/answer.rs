@@ -24,8 +24,8 @@ pub(crate) struct Answer {
     endings: Endings,
     modes: BTreeMap<String, usize>,
     errors: BTreeMap<String, usize>,
-    /// Levels that several cases share, with counts by outcome. If there are more levels than the
-    /// maximum, the list has one level more than the maximum.
+    /// Levels of the cases, with counts by outcome. At most `MOST` + 1 levels are kept, which suffices to detect that
+    /// there are more than `MOST`.
     levels: Vec<(f64, Tally)>,
     unit: String,
 }

@@ -81,7 +81,7 @@ pub(super) struct Batch<'a> {
     pub(super) out: &'a Path,
     /// Options for folders: flatfile and periods.
     pub(super) folder: &'a FolderArgs,
-    /// Settings that affect the rows, as text; a table continues only with the same settings.
+    /// Settings that affect the rows, as text; an existing table is continued only if its settings are the same.
     pub(super) settings: String,
     /// Periods (s) of the spectra; replaces the periods of the options.
     pub(super) periods: Option<Vec<f64>>,
