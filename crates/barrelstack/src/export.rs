@@ -280,8 +280,10 @@ fn first_in(folder: &Path) -> Option<String> {
     names.map(|entry| entry.file_name().to_string_lossy().into_owned()).min()
 }
 
-/// Returns the files of an answer by name, with the report in a language; with two planes, the names of the files of
-/// one plane are prefixed with the name of the plane.
+/// Returns the files of an answer by name, with the report in a language.
+///
+/// If there are two planes, each plane has its own histories, forces, envelopes and frames, in files whose names begin
+/// with the name of the plane.
 ///
 /// # Errors
 /// When the archive of histories cannot be written.

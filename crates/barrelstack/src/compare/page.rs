@@ -71,8 +71,8 @@ fn singles(side: &Side) -> impl Iterator<Item = (Option<View>, &Outcome)> {
     shown.chain(side.other.iter().map(|other| (Some(other.view), &other.outcome)))
 }
 
-/// Returns the planes in which a single run collapses, such as " (along the barrels)"; empty unless
-/// both planes were analyzed.
+/// Returns words for the planes in which a single run collapses, such as " (along the barrels)";
+/// empty unless both planes were analyzed.
 fn falls_where(side: &Side) -> String {
     let falls = singles(side).filter(|(_, outcome)| outcome.is_collapse());
     let views: Vec<&str> = falls.filter_map(|(view, _)| Some(view?.words())).collect();
@@ -112,8 +112,8 @@ fn stands(side: &Side) -> bool {
     }
 }
 
-/// Describes the change of the number of collapses from the first run to the others, in paired
-/// variants; `None` if a run has no variants.
+/// Describes how the number of collapses changes from the first run to every other run, counted over
+/// paired variants; `None` if a run has no variants.
 fn effect(sides: &[Side]) -> Option<String> {
     let (first, others) = sides.split_first()?;
     let pairs: Vec<Vec<Paired>> = others.iter().map(|other| Paired::of(first, other)).collect();
@@ -169,8 +169,8 @@ fn effect(sides: &[Side]) -> Option<String> {
     Some(format!("{cause}, {}.", clauses.join("; ")))
 }
 
-/// Returns the plane of a pair, such as " across the barrels"; empty unless both planes were
-/// analyzed.
+/// Returns words for the plane of a paired comparison, such as " across the barrels"; empty unless
+/// both planes were analyzed.
 fn place(side: &Side, pair: &Paired) -> String {
     let view = View::ALL.into_iter().find(|view| Some(view.name()) == pair.view);
     let both = view.filter(|_| side.other.is_some());
@@ -262,8 +262,8 @@ fn headline(sides: &[Side]) -> String {
     }
 }
 
-/// States that runs end before their motion does; empty unless a stack stands at the end of such a
-/// run.
+/// Returns the warning that runs end before their ground motion does; empty unless a stack still
+/// stands at the end of such a run.
 fn cut_short(sides: &[Side]) -> String {
     let cut = |side: &Side| match share(side) {
         Some(spread) => spread.standing_until.is_some(),

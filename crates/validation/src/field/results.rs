@@ -38,7 +38,7 @@ pub struct Share {
     pub count: (u32, u32),
     /// 95 % interval of the share of the simulated cases that fall.
     pub design: Interval,
-    /// Mean fitted probability that the same cases fall.
+    /// Fitted probability of a fall, averaged over the simulated cases.
     pub fitted: f64,
     /// Probability of a fall with the medians of the catalog, under the unscaled record.
     pub medians: f64,

@@ -6,8 +6,9 @@ use crate::order::{Order, planar_heap, planar_pairs, spatial_heap, spatial_pairs
 use crate::problem::{Reference, absolute, setting};
 use crate::{Effort, Outcome, Problem};
 
-/// Time step (s) and end time (s).
+/// Time step (s).
 const STEP: f64 = 1e-4;
+/// End time (s).
 const END: f64 = 1.0;
 
 /// Returns the problems of this module.

@@ -210,7 +210,7 @@ mod tests {
         searches_covered: u32,
         chosen: u32,
         chosen_covered: u32,
-        /// Changes reported as sufficient though their true failure probability exceeds the limit.
+        /// Number of changes that are reported as sufficient although their true failure probability exceeds the limit.
         too_many_fall: u32,
     }
 
