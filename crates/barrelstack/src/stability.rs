@@ -13,7 +13,7 @@ use barrelstack_stack::stand::{Standing, UNBALANCED, stand};
 
 use crate::run::RunFailure;
 
-/// Tilt (rad) of the floor from which the period of sway is computed; so small that nothing slips.
+/// Tilt (rad) of the floor at which the period of sway is computed. The tilt is so small that nothing slips.
 const NUDGE: f64 = 1e-4;
 
 /// First step (rad) by which the floor is tilted: 2°.

@@ -90,7 +90,7 @@ pub(super) fn excess(largest: f64, deviate: f64) -> f64 {
     1.0 + largest * normal(deviate)
 }
 
-/// Returns the standard normal deviate of a constant in the variant with the given number, starting from 1.
+/// Returns the standard normal deviate of a constant in a variant; the numbers of variants start from 1.
 pub(super) fn deviate(
     imperfections: &Imperfections,
     unknowns: &Unknowns,

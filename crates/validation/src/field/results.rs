@@ -85,7 +85,8 @@ pub struct Results {
     pub posteriors: Vec<Posterior>,
     /// Likelihoods along each unknown.
     pub bins: Vec<Bin>,
-    /// Predicted value of each statement, over the prior and over the posterior given the statement "half".
+    /// For each statement, its name and its predicted value, over the prior and over the posterior given the statement
+    /// "half".
     pub predictions: Vec<(String, Range, Range)>,
     /// For each value of the barrel–rack friction: the share of barrels on the floor, as mean and central 90 % over all
     /// other unknowns.

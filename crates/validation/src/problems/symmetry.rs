@@ -25,7 +25,7 @@ pub(super) fn problems() -> Vec<Problem> {
         problem("two-on-a-floor", "two solids on a floor", limit(), |effort| {
             (0..if effort == Effort::Full { 15 } else { 4 }).map(spatial_heap).collect()
         }),
-        // A change of the last bit of the initial state moves the blocks by 1.4e-9 m as well.
+        // A change of the last bit of the initial state also moves the blocks by 1.4e-9 m.
         problem("blocks-on-a-floor", "two blocks on a floor", absolute(0.0, 1e-8), |_| {
             vec![spatial_heap(15)]
         }),
