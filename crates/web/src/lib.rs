@@ -78,7 +78,8 @@ pub enum RequestKind {
     /// then the bytes of motions that are combined from several files. The request needs no
     /// scenario.
     Records,
-    /// The motion of a variant, as JSON. The first entry of `numbers` selects the variant; 0 is the stack as stated.
+    /// The moving picture of a variant and its result, as JSON. The first entry of `numbers` selects the variant; 0 is
+    /// the stack as stated.
     Show,
     /// The results of the variants `numbers` in each plane, as JSON; then the paths of their barrels (the trails) as
     /// bytes, for a report.
@@ -297,7 +298,7 @@ fn some(
     Ok(enveloped(&json(&cases)?, &[&trails::written(trails)]))
 }
 
-/// The motion of a variant.
+/// The moving picture of a variant, with its result.
 #[derive(Serialize)]
 struct Shown<'a> {
     variant: u32,

@@ -177,7 +177,8 @@ fn place(side: &Side, pair: &Paired) -> String {
     both.map_or_else(String::new, |view| format!(" {}", view.words()))
 }
 
-/// Describes the differences between the shares of collapses, with their intervals.
+/// Describes, for each run after the first, how its share of collapses differs from that of the first
+/// run, with the 95 % interval of the difference.
 fn differences_in(sides: &[Side]) -> Vec<String> {
     let Some((first, others)) = sides.split_first() else { return Vec::new() };
     let of = |(at, other): (usize, &Side)| {
@@ -405,8 +406,8 @@ fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
     motions.all(|motion| Some(motion) == first)
 }
 
-/// Returns the ground motions to draw below the stages. If all runs have the same motion, the
-/// motion of the longest run is drawn; otherwise the motion of each run is drawn.
+/// Returns the ground motions to draw below the players. If all runs have the same motion, that of
+/// the longest run is drawn; otherwise, the motion of each run is drawn.
 fn lanes(sides: &[Side]) -> Vec<History> {
     if one_motion(sides) {
         let longest = sides.iter().max_by(|a, b| a.end_time.total_cmp(&b.end_time));

@@ -370,9 +370,9 @@ fn correlations(constants: &[Drawn], of_friction: f64) -> Vec<Vec<f64>> {
     all.clone().map(|i| all.clone().map(|j| between(i, j)).collect()).collect()
 }
 
-/// Fits the share of collapses to the results of the nominal case and of its variants, which are in
-/// the order of their numbers. Returns `None` if the variants do not differ in their constants,
-/// if a variant has no verdict, or if there are too few variants.
+/// Fits the regression of the share of collapses to `results`, the results of the nominal case and of its variants in
+/// the order of their numbers. Returns `None` if the variants do not differ in their constants, if a variant has no
+/// verdict, or if there are too few variants.
 pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     let verdicts: Vec<Option<bool>> = results.get(1..)?.iter().map(verdict).collect();
     let (fitted, constants) = fit(plane, &verdicts)?;
@@ -392,8 +392,8 @@ pub(super) fn draws(planes: &[Plane], verdicts: &[Vec<Option<bool>>]) -> Option<
     shares.into_iter().reduce(larger)
 }
 
-/// Fits the share of collapses to the verdicts of the variants, which are in the order of their numbers, and returns it
-/// with its constants.
+/// Fits the regression of the share of collapses to the verdicts of the variants, in the order of their numbers, and
+/// returns it with its predictors, the uncertain constants.
 fn fit(plane: &Plane, verdicts: &[Option<bool>]) -> Option<(Conditional, Vec<Drawn>)> {
     let imperfections = plane.scenario.imperfections()?;
     let unknowns = plane.scenario.unknowns()?;

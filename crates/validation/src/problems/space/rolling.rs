@@ -72,7 +72,7 @@ fn incline(degrees: f64, friction: f64, acceleration: f64, spin: f64) -> [Proble
     ]
 }
 
-/// Radius (m) of the large ball that represents the floor where the rolling ball is the target.
+/// Radius (m) of the large ball that represents the floor if the rolling ball is the target of the contact pair.
 const EARTH: f64 = 1e5;
 
 /// Creates the ball on a slope, with the contact constants of the problems of [`carried`].
