@@ -339,7 +339,7 @@ fn start_of(scenario: &Scenario) -> Value {
     json!({ "name": "scenario.toml", "text": packed.to_resolved_toml(), "records": records })
 }
 
-/// Writes all channels and "time" as arrays, named like the columns of the CSV file.
+/// Writes the times (as `time`) and all channels as arrays, named like the columns of the CSV file.
 fn histories_npz(run: &Run) -> std::io::Result<Vec<u8>> {
     let recording = &run.recording;
     let mut arrays = vec![("time".to_owned(), recording.times.as_slice())];

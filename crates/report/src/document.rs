@@ -27,7 +27,7 @@ pub struct Document {
 }
 
 impl Document {
-    /// Returns the blocks up to the first picture, and the blocks that follow the prose of the verdict.
+    /// Divides the blocks into those up to the first picture and all others, which follow the sentences of the verdict.
     ///
     /// The first picture is the first player or, without a player, a figure or table that opens the document.
     pub(crate) fn parted(&self) -> (&[Block], &[Block]) {
