@@ -187,8 +187,8 @@ impl Results {
         Ok(weighed)
     }
 
-    /// Computes, as functions of the barrel–rack friction, the share of barrels on the floor and the prior and posterior
-    /// densities of this friction.
+    /// Computes, as functions of the barrel–rack friction, the share of barrels on the floor, and the prior and
+    /// posterior densities of this friction.
     fn along_friction(&mut self, draws: &[[f64; UNKNOWNS]], weighed: &Weighed) {
         let even = vec![1.0; draws.len()];
         for edges in bins(24).windows(2) {
