@@ -24,8 +24,8 @@ use crate::{
 ///
 /// - Bodies: closed outlines are polygons, open outlines and marks are lines. Cells carry `body`
 ///   (the index in the scene), `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device) and
-///   `displacement` (m): how far the origin of the body has moved since the first frame. Bodies
-///   without a finite pose are left out.
+///   `displacement` (m): the displacement vector of the origin of the body since the first frame.
+///   Bodies without a finite pose are left out.
 /// - Forces: a vertex at each point of contact, with `force` (N) as a vector.
 pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     let frames = sampled(scene, rate);

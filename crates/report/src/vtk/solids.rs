@@ -59,8 +59,8 @@ pub struct Solids {
 /// as in [`paraview`](super::paraview).
 /// Surfaces are triangles, straps and ties are lines. Cells carry `body` (the index of the body or
 /// tie), `role` (as in [`paraview`](super::paraview)), `level` (0 for a tie) and `displacement` (m):
-/// how far the origin of the body has moved since the first frame (0 for a tie). Points carry
-/// `velocity` (m/s).
+/// the displacement vector of the origin of the body since the first frame (0 for a tie). Points
+/// carry `velocity` (m/s).
 ///
 /// # Errors
 /// The first error of `put`.
