@@ -1,9 +1,9 @@
 //! Compares the stated range over uncertain constants with shares under known constants: `cargo run --release -p barrelstack-library
 //! --example unknowns -- TRUTHS`.
 //!
-//! The constants are drawn from their distributions, many times. Under each draw, 64 stacks that differ in places and
-//! masses alone are shaken: their share is the true one, to the error of 64 stacks. The range is that of the usual 64
-//! variants, which know nothing of the draw.
+//! The constants are drawn from their distributions many times. For each draw, 64 stacks that differ only in positions
+//! and masses are shaken; the share that falls is the true share for these constants, up to the sampling error of 64
+//! stacks. The stated range comes from the usual 64 variants, whose constants are drawn independently.
 #![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
 
 use std::ops::ControlFlow;
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let stated = run(&own(Vec::new()))?;
         let mut shares = vec![Vec::new(); stated.len()];
         for truth in 1..=truths {
-            // The constants of a variant drawn with another seed, and none of its places and masses.
+            // The constants, but not the positions and masses, are those of a variant drawn with another seed.
             let draw = own(vec![
                 "imperfections.drawn=false".to_owned(),
                 "imperfections.seed=1000".to_owned(),

@@ -79,7 +79,7 @@ pub enum Traced {
     BaseForce,
 }
 
-/// Results of a scenario that can be compared: in planes or in three dimensions.
+/// Results of a scenario, in planes or in three dimensions, which can be compared with those of other scenarios.
 pub trait Comparable: Sized {
     /// Returns the scenario.
     fn scenario(&self) -> &Scenario;
@@ -101,8 +101,8 @@ pub trait Comparable: Sized {
         observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
     ) -> Result<Self, RunFailure>;
 
-    /// Returns the share of variants that collapse (for a single run, 0 or 1) in the plane in which it is largest, and
-    /// this plane. The plane is `None` for a three-dimensional model and for a free scene.
+    /// Returns the largest share of variants that collapse in any plane (0 or 1 for a single run), and this plane. The
+    /// plane is `None` for a three-dimensional model and for a free scene.
     fn worst(&self) -> (f64, Option<View>);
 
     /// Returns these results as one side of a comparison, shown in the given plane if the scenario has it.
@@ -134,7 +134,8 @@ pub fn aligned<A: Comparable>(
 
 /// Returns the runs of the answers with their names.
 ///
-/// If all answers have both planes, every run is shown in the governing plane of the worst answer.
+/// If all answers have both planes, every run is shown in the same plane: the governing plane of the answer with the
+/// largest share of collapses.
 pub fn sides<A: Comparable>(answers: Vec<(String, A)>) -> Vec<Side> {
     let all = answers.iter().map(|(_, answer)| answer.worst());
     let worst = all.reduce(|worst, one| if one.0 > worst.0 { one } else { worst });
@@ -204,7 +205,7 @@ impl Side {
     pub fn of_run(name: String, run: &Run, summary: Summary) -> Self {
         let assembly = &run.assembly;
         let recorded = |values: Vec<f64>| [run.recording.times.clone(), values];
-        // Along x, of the first body of a kind on a level.
+        // Displacement (cm) along x of the first body of a kind on a level.
         let displacement = |kind: PartKind, level: u32| {
             let body = assembly.of_kind(kind).find(|b| assembly.parts[*b].level == Some(level))?;
             let channel = run.recording.displacement(&assembly.parts[body].name)?;
@@ -260,7 +261,7 @@ pub struct OtherPlane {
     pub spread: Option<Spread>,
 }
 
-/// Error of a comparison.
+/// Reason why runs cannot be compared.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum CompareError {
     /// Fewer than two runs.

@@ -33,8 +33,8 @@ const FILES_OF_PLANE: [&str; 5] =
 /// Maximum size (bytes) of a summary that is read.
 const SUMMARY_LIMIT: usize = 256 << 20;
 
-/// Longest time between writing the first and the last file of a run; a later modification is
-/// attributed to another program.
+/// Maximum time that a run takes to write its files. A file that was modified later was changed by
+/// another program.
 const AT_ONCE: Duration = Duration::from_secs(10);
 
 /// Error while writing output files.
@@ -280,8 +280,10 @@ fn first_in(folder: &Path) -> Option<String> {
     names.map(|entry| entry.file_name().to_string_lossy().into_owned()).min()
 }
 
-/// Returns the files of an answer by name, with the report in a language; with two planes, the names of the files of
-/// one plane are prefixed with the name of the plane.
+/// Returns the files of an answer by name, with the report in a language.
+///
+/// If there are two planes, each plane has its own histories, forces, envelopes and frames, in files whose names begin
+/// with the name of the plane.
 ///
 /// # Errors
 /// When the archive of histories cannot be written.
@@ -337,7 +339,7 @@ fn start_of(scenario: &Scenario) -> Value {
     json!({ "name": "scenario.toml", "text": packed.to_resolved_toml(), "records": records })
 }
 
-/// Writes all channels and "time" as arrays, named like the columns of the CSV file.
+/// Writes the times (as `time`) and all channels as arrays, named like the columns of the CSV file.
 fn histories_npz(run: &Run) -> std::io::Result<Vec<u8>> {
     let recording = &run.recording;
     let mut arrays = vec![("time".to_owned(), recording.times.as_slice())];

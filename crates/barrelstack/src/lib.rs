@@ -36,8 +36,8 @@
 //! free scene and an ensemble in about ten lines each; the examples of [`dynamics`] include user-defined force
 //! elements.
 
-// Results have the same bits on every machine, so the transcendental functions are those of this project
-// (`clippy.toml`).
+// Results must be bit-identical on every machine, so only the transcendental functions of this project are used
+// (`clippy.toml` forbids those of the standard library).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod breakage;

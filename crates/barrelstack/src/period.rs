@@ -1,5 +1,5 @@
-//! Amplitude-dependent rocking period of a stack, for an equivalent rigid block and as measured in
-//! a run.
+//! Amplitude-dependent rocking period of a stack: computed for the equivalent rigid block, and
+//! measured in a run.
 
 use barrelstack_dynamics::Motion;
 

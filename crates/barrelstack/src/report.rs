@@ -52,8 +52,8 @@ pub fn document(run: &Run, summary: &Summary) -> Document {
 
 /// Builds the report of an answer.
 ///
-/// The report describes the governing plane, shows the stage of the other plane beside it, and
-/// includes the repeats of the shown run.
+/// The report describes the governing plane, shows the moving picture of the other plane beside it,
+/// and includes the repeats of the shown run.
 pub fn answer_document(answer: &Answer) -> Document {
     let Answer { decides, other, .. } = answer;
     let variants = (decides.variants.as_ref(), other.as_ref());

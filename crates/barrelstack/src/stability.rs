@@ -13,7 +13,7 @@ use barrelstack_stack::stand::{Standing, UNBALANCED, stand};
 
 use crate::run::RunFailure;
 
-/// Tilt (rad) of the floor from which the period of sway is computed; so small that nothing slips.
+/// Tilt (rad) of the floor at which the period of sway is computed. The tilt is so small that nothing slips.
 const NUDGE: f64 = 1e-4;
 
 /// First step (rad) by which the floor is tilted: 2°.
@@ -166,8 +166,9 @@ fn period_of(standing: &Standing) -> Option<f64> {
     Some(std::f64::consts::TAU * (swung / work).sqrt())
 }
 
-/// Returns the smallest tilt (rad) of the floor to either side at which the stack fails, with the
-/// body that fails first and its failure mode; `None` if the stack stands at 45° to both sides.
+/// Returns the smallest tilt (rad) of the floor, to the left or to the right, at which the stack
+/// fails, with the body that fails first and its failure mode. Returns `None` if the stack still
+/// stands when the floor is tilted by 45° to either side.
 fn tilt_at_failure(standing: &Standing) -> Option<(f64, (String, &'static str))> {
     let left = tilt_at_failure_to(standing, -1.0, STEEPEST);
     // The other side needs to be tried only up to the tilt found for the first side.

@@ -347,7 +347,7 @@ pub enum AnySummary {
     Spatial(Box<SummaryInSpace>),
 }
 
-/// Returns a field of either summary.
+/// Returns a field that planar and three-dimensional summaries have in common.
 macro_rules! either {
     ($of:expr, $one:pat => $value:expr) => {
         match $of {
@@ -415,8 +415,8 @@ fn demands(run: &Run, span: Span) -> Demands {
 }
 
 impl JointSummary {
-    /// Returns the summary of the forces between two bodies under a name; `None` if the bodies
-    /// never touched.
+    /// Summarizes the forces between two bodies, with a name for the pair; `None` if the bodies never
+    /// touched.
     pub fn of(name: String, joint: &Joint) -> Option<Self> {
         let PeakForces { vertical, horizontal } = joint.until_loss;
         let whole = joint.whole_run;

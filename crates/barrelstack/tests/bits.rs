@@ -1,4 +1,4 @@
-//! Results have the stored reference bits, or another version.
+//! Results are bit-identical to the stored references, unless their version has changed.
 
 mod common;
 mod golden;

@@ -60,10 +60,10 @@ fn every_device_at_zero_strength_or_out_of_reach_gives_the_bits_of_the_stack_wit
 
 #[test]
 fn every_device_as_it_is_worth_trying_changes_the_bits_of_a_stack() {
-    // Otherwise equal bits without a device would prove nothing.
+    // If devices had no effect at all, the tests of idle devices would prove nothing.
     for words in DEVICES {
         let changes = |name: &str| {
-            // Strong enough to throw the barrels at the top against their lids.
+            // The shaking is strong enough to throw the top barrels against their lids.
             let bits_with = |changes: &[&str]| bits(&shaken(name, "4 in", changes));
             let bare = bits_with(&[]);
             words.candidates.iter().any(|it| bits_with(it.overrides) != bare)
@@ -74,7 +74,7 @@ fn every_device_as_it_is_worth_trying_changes_the_bits_of_a_stack() {
 
 #[test]
 fn a_lid_lets_go_of_a_barrel_that_is_out_from_under_it() {
-    // Lids that pressed on barrels wherever these lay made both runs invalid.
+    // In an earlier version, lids pressed on barrels wherever these lay, which made both runs invalid.
     for (levels, velocity) in [(1, 60), (3, 100)] {
         let run = run(
             "demo-napa",
@@ -272,8 +272,8 @@ fn a_report_lists_the_inputs_of_a_device_where_it_is_on_the_stack_or_stated() {
     assert!(lists(&["stack.chock.gap=\"7 mm\""], "stack.chock.gap"));
 }
 
-/// The automatic step and its division in impacts must hold once a device is reached, so an idle one may shorten them;
-/// that is all it does.
+/// The automatic step and its division in impacts must remain valid when a body reaches a device. An idle device may
+/// therefore shorten the steps, but has no other effect.
 #[test]
 fn an_idle_device_may_shorten_steps_and_changes_no_bit_at_the_same_ones() {
     let (mut shortened, mut compared) = (Vec::new(), 0);

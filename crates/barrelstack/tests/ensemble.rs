@@ -1,4 +1,4 @@
-//! Cases in lanes have the same bits as alone.
+//! Cases that run side by side in SIMD lanes give bit-identical results to cases that run alone.
 #![expect(clippy::print_stdout, reason = "prints the comparisons and their lanes")]
 
 use crate::common::Random;

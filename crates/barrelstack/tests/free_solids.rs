@@ -40,7 +40,7 @@ fn body(name: &str, shape: &str, nodes: &str, position: [f64; 2], angle: f64) ->
 
 const BOX: &str =
     r#"{ type = "rectangle", width = "0.6 m", height = "0.2 m", corner_radius = "1 cm" }"#;
-/// The same matter in two halves.
+/// The same rectangle composed of two halves.
 const HALVES: &str = r#"{ type = "compound", parts = [
     { shape = { type = "rectangle", width = "0.3 m", height = "0.2 m" }, offset = ["-0.15 m", "0 m"] },
     { shape = { type = "rectangle", width = "0.2 m", height = "0.3 m" }, offset = ["0.15 m", "0 m"], turn = "90 deg" } ] }"#;
@@ -50,7 +50,7 @@ fn a_compound_has_the_mass_properties_of_what_it_is_made_of() {
     let of = |shape: &str| {
         let text = body("one", shape, "\"exact\"", [0.0, 0.1], 0.0);
         let scenario = scene(&text, ["box", "box"]);
-        // Written text reads back.
+        // The written text is read back.
         let again = Scenario::parse("again", &scenario.to_resolved_toml(), &[]).unwrap();
         assert_eq!(again.to_resolved_toml(), scenario.to_resolved_toml());
         let Scene::Free(free) = scenario.scene else { panic!() };
@@ -80,7 +80,7 @@ fn chosen_nodes_at_the_corners_are_corners() {
 fn exact_bodies_lie_on_each_other_whichever_comes_first_and_do_not_stand_in_each_other() {
     for upper in [BOX, HALVES] {
         let low = body("low", BOX, "\"exact\"", [0.0, 0.0998], 0.0);
-        // Half of it hangs over the edge of the lower one, short of tipping.
+        // Almost half of the upper body hangs over the edge of the lower body, but it does not tip.
         let high = body("high", upper, "\"exact\"", [0.28, 0.2996], 0.0);
         let one = run(&scene(&format!("{low}{high}"), ["box", "box"]));
         let other = run(&scene(&format!("{high}{low}"), ["box", "box"]));
@@ -88,7 +88,8 @@ fn exact_bodies_lie_on_each_other_whichever_comes_first_and_do_not_stand_in_each
         let [a, b] = [one[2], other[1]];
         let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(apart < 1e-9, "{apart:e}"); // measured 5e-17
-        // By statics 1.2 mm in each joint and a turn of 4.3 mrad; measured 2.4 mm and 4.7 mrad.
+        // By statics, the upper body sinks by 1.2 mm in each joint and rotates by 4.3 mrad; measured: 2.4 mm in all,
+        // and 4.7 mrad.
         assert!((a[1] - 0.3).abs() < 3e-3, "{a:?}");
         assert!((a[0] - 0.28).abs() < 1e-3 && a[2].abs() < 5e-3, "{a:?}");
     }
@@ -104,7 +105,7 @@ fn a_ball_rolls_off_an_exact_box_round_its_corner() {
         let mut scenario = scene(&format!("{low}{ball}"), between);
         scenario.run.settle = false;
         let at = last(&run(&scenario));
-        // It leaves the box and then falls freely.
+        // The ball leaves the box and then falls freely.
         assert!(at[2][0] > 0.4 && at[2][1] < 0.1, "{:?}", at[2]);
     }
 }
@@ -146,7 +147,7 @@ fn a_restitution_holds_for_its_speed_under_the_law_of_hunt_and_crossley() {
          [record]\nframe_rate = \"2 kHz\"\n"
     );
     let run = run(&Scenario::parse("bounce", &text, &[]).unwrap());
-    // It falls from 1 m and rises to e² of that.
+    // The disc falls from 1 m and rises to e² times this height, where e is the restitution.
     let struck = (2.0 / 9.80665_f64).sqrt();
     let frames = &run.recording.frames;
     let risen =
@@ -156,7 +157,7 @@ fn a_restitution_holds_for_its_speed_under_the_law_of_hunt_and_crossley() {
     assert!((top / 0.16 - 1.0).abs() < 5e-3, "{top}");
 }
 
-/// Returns a hexagonal heap of discs, 20 cm in radius, on the ground.
+/// Returns a hexagonal heap of discs with a radius of 20 cm, on the ground.
 fn heap(count: usize, across: usize) -> String {
     let mut bodies = String::new();
     for at in 0..count {
@@ -177,8 +178,8 @@ fn five_thousand_bodies_run_and_the_next_one_is_refused_in_words() {
     let settings = ["run.settle=false".to_owned(), "run.duration=\"2 ms\"".to_owned()];
     let scenario = Scenario::parse("heap", &heap(5000, 71), &settings).unwrap();
     let run = run(&scenario);
-    // Six neighbors each except at the border, half of them counted at the other: 14,500 contacts, and nothing else
-    // is tested.
+    // Each disc has six neighbors, except at the boundary of the heap, and each contact is counted at one of its two
+    // discs. This gives 14,500 contacts; no other pairs are tested.
     let tested = run.work.contact_evaluations as f64 / run.work.evaluations as f64;
     assert!((14_000.0..16_000.0).contains(&tested), "{tested} contact elements a step");
     let error = Scenario::parse("heap", &heap(5001, 71), &[]).unwrap_err().to_string();

@@ -16,13 +16,13 @@ use barrelstack_dynamics::{
 enum Way {
     /// As in runs: gravity acts on all bodies at once, and overshoot dies out quickly.
     AtOnce,
-    /// Gravity grows in a number of parts, each brought to rest.
+    /// Gravity grows in a number of increments; the stack comes to rest after each.
     Growing(u32),
-    /// Level by level; those above have no weight until then.
+    /// Level by level: a level is almost weightless until all levels below have settled.
     LevelByLevel,
-    /// As real motion, damped at a rate of 5 1/s.
+    /// With the real equations of motion, damped at a rate of 5 1/s.
     Swinging,
-    /// Without friction, which acts afterwards.
+    /// Without friction while the stack settles; friction acts only afterwards.
     Smooth,
 }
 

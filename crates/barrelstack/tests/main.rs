@@ -1,6 +1,6 @@
 //! Stacks as a user states them: verdicts, variants, comparisons, pages and files, and the numbers that they rest on.
 //!
-//! One program, since each would compile and link what it tests anew.
+//! All tests are in one program, since every further test program would have to be compiled and linked.
 
 #![allow(clippy::unwrap_used, reason = "tests and their helpers fail by panicking")]
 

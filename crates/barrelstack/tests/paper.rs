@@ -1,7 +1,7 @@
 //! The cases of Candia, de la Llera and Almazán (2008): results of the paper, and invariants of every run.
 //!
-//! The paper gives neither the barrels nor the racks in full, and its cases are chaotic after the first
-//! impacts; so the bands are those in which a faithful model must fall, not its decimals.
+//! The paper does not fully describe the barrels and the racks, and its cases are chaotic after the first impacts.
+//! The tests therefore check ranges in which a faithful model must lie, not exact values.
 //! The six-barrel cases need a record that may not be redistributed; without it they are reported as skipped.
 
 #![allow(clippy::print_stdout, reason = "measured values are shown with --nocapture")]
@@ -15,8 +15,8 @@ use barrelstack::outcome::{CollapseMode, Outcome};
 use barrelstack::overlap::{Boundaries, Overlap};
 use barrelstack::{Run, Scenario, Summary};
 
-/// Largest residual of the energy balance, as a share of the energy that went through a run, its heap at rest
-/// included; measured 3.4e-5 with steps of 0.25 ms and 4e-6 with 0.1 ms.
+/// Largest residual of the energy balance of a run, as a share of the energy supplied, even if the run continues until
+/// the fallen barrels are at rest. Measured: 3.4e-5 with steps of 0.25 ms, and 4e-6 with steps of 0.1 ms.
 const ENERGY: f64 = 1e-4;
 
 fn run(name: &str, overrides: &[&str]) -> Run {
@@ -25,7 +25,7 @@ fn run(name: &str, overrides: &[&str]) -> Run {
     scenario.run().unwrap()
 }
 
-/// Returns the benchmark, with which most tests compare; run once.
+/// Returns the run of the benchmark, to which most tests refer; it is computed only once.
 fn eight() -> &'static Run {
     static RUN: LazyLock<Run> = LazyLock::new(|| run("candia-8-barrels", &[]));
     &RUN
@@ -84,7 +84,7 @@ fn eight_barrels_drift_and_press_as_in_the_paper() {
     let drift = summary.demands.top_drift_ratio.unwrap();
     let amplification = summary.demands.stress_amplification.unwrap();
     println!("eight barrels: drift {drift}, amplification {amplification}");
-    // The paper: 5.2 % of the height, 3.0 times the stress at rest.
+    // The paper: a drift of 5.2 % of the height, and 3.0 times the stress at rest.
     within("drift", drift, 0.04, 0.07);
     within("amplification", amplification, 2.5, 3.5);
 }
@@ -159,7 +159,7 @@ fn along_the_barrels_a_rack_walks_off() {
         run.energy.unwrap().residual_ratio()
     );
     assert_eq!(mode, CollapseMode::RackSliding);
-    // The paper: the rack of the second level, at 4.5 s.
+    // The paper: the rack of the second level leaves its seat first, at 4.5 s.
     assert_eq!(level, 2);
     within("collapse", time, 3.0, 6.0);
     energy_balances(&run);
@@ -201,7 +201,7 @@ fn six_barrels_rock_off_above_the_first_level() {
     assert_eq!((mode, level), (CollapseMode::Rocking, 2));
     assert_eq!(fallen.len(), 4);
     assert!(falls(&run, 1).is_empty());
-    // The paper: after 10 s of the motion, 2.9 times the stress at rest, and 2 cm.
+    // The paper: falls after 10 s of the motion, 2.9 times the stress at rest, and a residual slip of 2 cm.
     for fell in fallen {
         within("fall", fell, 9.5, 12.5);
     }
@@ -233,7 +233,7 @@ fn nothing_stands_in_anything_while_it_falls() {
     let frames = &run.recording.frames;
     for (index, poses) in frames.all_poses().enumerate() {
         for Overlap { bodies: [a, b], depth } in boundaries.overlaps(&poses) {
-            // Feet sink into crowns and barrels into cradles, which the paper has this soft.
+            // At seats, feet sink into crowns and barrels into cradles, because the contacts of the paper are soft.
             let seat = parts[b].carrier == Some(a)
                 || parts[b].supports.contains(&a)
                 || (a == 0 && parts[b].kind == PartKind::Rack && parts[b].supports.is_empty());

@@ -217,8 +217,8 @@ fn bounces(changes: &[&str], slowest: f64) -> (Vec<f64>, u64) {
     (all, run.work.steps)
 }
 
-/// Asserts that a free scene's disc gives back what it states, in at least some bounces; slower ones are worked on by
-/// gravity while they last, which a restitution does not know.
+/// Asserts that the disc rebounds with the stated restitution, in at least `bounces_at_least` bounces. Slow bounces are
+/// left out: they last so long that the work of gravity changes the speed.
 fn gives_back(stated: f64, changes: &[&str], bounces_at_least: usize, most_steps: u64) {
     let restitution = format!("interface.disc-ground.restitution={stated}");
     let changes = [&[restitution.as_str()], changes].concat();
@@ -232,20 +232,20 @@ fn gives_back(stated: f64, changes: &[&str], bounces_at_least: usize, most_steps
 
 #[test]
 fn every_builtin_scenario_keeps_what_it_states() {
-    // Each bounce keeps the restitution times the speed of the impact.
+    // After each bounce, the speed is the restitution times the speed of the impact.
     gives_back(0.7, &[], 3, 15_000); // measured 0.6946 in 10,703 steps
-    // v²/(2 μ g) = 0.170 m, where it stops; less what the stick springs back.
+    // The block stops after v²/(2 μ g) = 0.170 m; the tangential spring then moves it back a little.
     let run = load("sliding-block").run().unwrap();
     let way = run.fates.fate(1).residual_slip;
     assert!((way - 1.0 / (2.0 * 0.3 * 9.80665)).abs() < 5e-4, "{way}");
-    // g sin α / (1 + I/(m r²)) on a slope of 10°.
+    // The acceleration is g sin α / (1 + I/(m r²)) on a slope of α = 10°.
     let run = load("rolling-disc").run().unwrap();
     let last = run.recording.frames.poses.last().unwrap()[1];
     let first = run.recording.frames.poses[0][1];
     let way = (last[0] - first[0]).hypot(last[1] - first[1]);
     let exact = 0.5 * 2.0 / 3.0 * 9.80665 * 10_f64.to_radians().sin() * 9.0;
     assert!((way / exact - 1.0).abs() < 1e-3, "{way} against {exact}");
-    // It rocks.
+    // The block rocks.
     let run = load("rocking-block").run().unwrap();
     let tilt = run.recording.frames.poses.iter().map(|poses| poses[1][2].abs());
     assert!(tilt.fold(0.0, f64::max) > 0.05);
@@ -299,7 +299,7 @@ fn every_integrator_keeps_the_restitution_that_a_free_scene_states_or_warns() {
             let all = found(method); // measured 0.9 % off at worst
             assert_eq!(all.len(), exact.len());
             assert!(all.iter().zip(&exact).all(near), "{stated}, {method:?}: {all:?} {exact:?}");
-            // Without gravity nothing else does: measured 0.2954 at worst.
+            // Without gravity, only the contact changes the speed: measured 0.2954 at worst.
             let [free] = found(&[&weightless[..], method].concat())[..] else {
                 panic!("one bounce")
             };

@@ -42,7 +42,7 @@ fn period(run: &Run, body: &str, after: f64) -> f64 {
     (zeros.last().unwrap() - zeros[0]) / (zeros.len() - 1) as f64
 }
 
-/// Where (m) the upper of two racks lies on the lower one after the shaking.
+/// Returns the displacement (m) of the upper of two racks relative to the lower rack after the shaking.
 fn walk(run: &Run) -> f64 {
     let end = |name: &str| *run.recording.displacement(name).unwrap().values.last().unwrap();
     end("R2") - end("R1")
@@ -52,7 +52,7 @@ fn walk(run: &Run) -> f64 {
 const PUSH: &str = "motion={ sine = { amplitude = \"2 mm\", period = \"0.4 s\", cycles = 1 } }";
 const SHAKE: &str = "motion={ sine = { amplitude = \"5 cm\", period = \"0.8 s\", cycles = 5 } }";
 
-/// The planes, with the columns that they show.
+/// Planes of the model, each with its number of columns.
 const PLANES: [(&str, u32); 2] = [("transverse", 2), ("longitudinal", 1)];
 
 fn changes((view, columns): (&str, u32), levels: u32, motion: &str, end: &str) -> Vec<String> {
@@ -76,7 +76,7 @@ fn refining_a_seat_changes_neither_rest_nor_period() {
             let found = [settlement(division, &pushed), period(&run(division, &pushed), "R4", 0.5)];
             println!("{} {name}: rest {:.6} m, period {:.5} s", plane.0, found[0], found[1]);
             for (value, one) in found.iter().zip(*first.get_or_insert(found)) {
-                // Measured 0.5 % of rest and 0.1 % of the period across the barrels.
+                // Measured across the barrels: 0.5 % of the settlement and 0.1 % of the period.
                 assert!((value / one - 1.0).abs() < 0.02, "{name}: {value} {one}");
             }
         }
@@ -95,7 +95,7 @@ fn refining_a_seat_changes_the_walk_along_the_barrels_by_less_than_2_percent() {
     }
 }
 
-/// Mean and the variance of the mean.
+/// Returns the mean of the values, and the variance of this mean.
 fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -103,7 +103,8 @@ fn mean(values: &[f64]) -> (f64, f64) {
     (mean, squares / (count - 1.0) / count)
 }
 
-/// Where (m) the upper rack lies after the shaking across the barrels, in each of some variants.
+/// Returns, for each of `count` variants, the displacement (m) of the upper rack relative to the lower rack after the
+/// shaking across the barrels.
 fn walks(division: &[&str], spread: &[&str], count: u32) -> Vec<f64> {
     let mut shaken = changes(PLANES[0], 2, SHAKE, "5 s");
     shaken.extend(spread.iter().map(|&one| one.to_owned()));
@@ -115,8 +116,8 @@ fn walks(division: &[&str], spread: &[&str], count: u32) -> Vec<f64> {
 
 #[test]
 fn across_the_barrels_the_walk_is_chaotic_and_agrees_in_the_mean() {
-    // A tenth of a millimeter in the places of racks and barrels moves the walk by more than 2 %, so single walks compare
-    // nothing.
+    // If racks and barrels are displaced by a tenth of a millimeter, the walk changes by more than 2 %. Therefore only
+    // the means of walks can be compared, not single walks.
     let still = ["imperfections.placement=\"0.1 mm\"", "imperfections.mass=0.0"];
     let touched = walks(DIVISIONS[0].1, &still, 4);
     let (least, most) = touched

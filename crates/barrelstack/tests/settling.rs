@@ -91,8 +91,9 @@ fn tried(name: &str, settings: &[String]) -> Tried {
     Tried { assembly, state, scratch, result, milliseconds }
 }
 
-/// Returns the largest unbalanced force (over the weight) and moment (over the weight at its reach) of the contacts
-/// of any body, summed here over the single contacts, each within its friction cone.
+/// Returns the largest out-of-balance force or moment of any body, from the sum over its contacts. Forces are divided
+/// by the weight of the body, and moments by its weight times its reach. Asserts that each contact force is within its
+/// friction cone.
 fn out_of_balance(tried: &Tried) -> f64 {
     let Tried { assembly, state, scratch, .. } = tried;
     let model = &assembly.model;
@@ -122,7 +123,8 @@ fn out_of_balance(tried: &Tried) -> f64 {
     .fold(0.0, f64::max)
 }
 
-/// Returns the largest displacement (m) of a body sideways, or down relative to those of lower number, which lie below.
+/// Returns the largest displacement (m) of a body, either sideways, or downward in excess of the sinking of the bodies
+/// below, which have lower numbers.
 fn strayed(start: &[Pose<Planar>], state: &State<Planar>) -> f64 {
     let (mut most, mut sunk) = (0.0_f64, 0.0_f64);
     for (from, to) in start.iter().zip(&state.poses) {
@@ -133,8 +135,8 @@ fn strayed(start: &[Pose<Planar>], state: &State<Planar>) -> f64 {
     most
 }
 
-/// Returns the largest displacement (m) of a body under the real laws of motion within a time (s), with velocities
-/// damped at a rate (1/s) and an initial velocity of all bodies (m/s).
+/// Returns the largest displacement (m) of a body under the real equations of motion within a time (s). Velocities are
+/// damped at a rate (1/s), and all bodies start with a horizontal velocity of `push` (m/s).
 fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push: f64) -> f64 {
     let model = &assembly.model;
     let damped = |body: &Body<Planar>| Body {
@@ -156,8 +158,8 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
             twist.linear.x = push;
         }
     }
-    // Where seats are so soft that the solids bear, the solids' law for impacts damps too much for the usual
-    // step, since its damping grows with the load.
+    // If the seats are so soft that the solid bodies touch, the impact law of the solids acts. Its damping grows with
+    // the load and is then too large for the usual step.
     let mut scratch = Scratch::new(&model);
     evaluate(&model, &state, &mut scratch);
     let meets_solid = |c: &Contact<Planar>| {
@@ -170,7 +172,7 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
     let simulation = Simulation { method: Method::VelocityVerlet, time_step, end_time: time };
     scratch.keeps_contacts = false;
     let start = state.poses.clone();
-    // Ends once a body has strayed 0.2 m.
+    // The simulation ends once a body has moved by 0.2 m.
     let mut gone = look(|state: &State<Planar>, _, _| {
         if strayed(&start, state) > 0.2 {
             ControlFlow::Break(())
@@ -199,7 +201,7 @@ fn settle_random(seeds: std::ops::Range<u64>, stays: u64) {
                 }
                 if seed < stays {
                     let way = motion(&tried.assembly, &tried.state, 1.0, 0.0, 1e-6);
-                    // Measured 1.1e-4 m, where solids bear: it decreases with the step.
+                    // Measured: 1.1e-4 m where solid bodies touch; the value decreases with the step.
                     if way > 1e-3 {
                         wrong.push(format!("{seed}: settled, and moves {way:.1e} m"));
                     }
@@ -272,7 +274,7 @@ fn dampers_do_not_decide_whether_a_stack_comes_to_rest_nor_where() {
     }
 }
 
-/// Prints the state at rest, bit for bit, independent of the order of contacts.
+/// Returns the state at rest as text, exact to the last bit and independent of the order of the contacts.
 fn at_rest(tried: &Tried) -> String {
     let Tried { state, scratch, result, .. } = tried;
     let sticks: Vec<_> = scratch
@@ -304,7 +306,7 @@ impl Task for Together<'_> {
 #[test]
 fn a_stack_that_settles_beside_others_comes_to_the_bits_that_it_comes_to_alone() {
     const COUNT: u64 = 240;
-    // Any stacks of one view, rack and height, with stiffness, friction and places of their own.
+    // Random stacks of the same view, rack and height, each with its own stiffness, friction and positions.
     let settings = |seed: u64| {
         let view = ["transverse", "longitudinal"][usize::from(seed.is_multiple_of(2))];
         let mut random = Random(seed);

@@ -1,4 +1,5 @@
-//! Froude similitude by a power of four changes exponents only, so runs agree bit for bit.
+//! Froude similitude with a length scale that is a power of four changes only the exponents of floating-point numbers,
+//! so runs at both scales agree bit for bit.
 
 use barrelstack::{Run, Scenario};
 

@@ -26,7 +26,7 @@ fn bits(run: &Run) -> (Vec<u64>, String) {
     (numbers.map(|number| number.to_bits()).collect(), format!("{rest:?} {ends:?}"))
 }
 
-/// Scenarios that end at rest, after a collapse, by their duration, and with steps that the method chooses.
+/// Scenarios that end at rest, after a collapse, or after their duration, and one with adaptive steps.
 const RUNS: [(&str, &[&str]); 4] = [
     ("candia-8-barrels", &["run.duration='6 s'"]),
     ("demo-napa", &["stack.view='longitudinal'", "stack.levels=3", "run.until='verdict'"]),

@@ -22,12 +22,12 @@ fn straps(run: &Run) -> Vec<ElementSummary> {
     Summary::of(run, None).devices.named("straps").to_vec()
 }
 
-/// Runs a stack of two levels under a small sine, with straps that tie both together.
+/// Runs a stack of two levels under a small sine, with straps that tie both levels together.
 fn small(changes: &[&str]) -> Run {
     unstrapped(&[&["stack.strap.levels=2", TOGETHER][..], changes].concat())
 }
 
-/// Runs it without straps, except for the changes.
+/// Runs the stack of [`small`] without straps, with the given changes.
 fn unstrapped(changes: &[&str]) -> Run {
     let all = ["stack.levels=2", "run.duration=\"1 s\"", "motion.sine.amplitude=\"5 cm\""];
     run("candia-8-barrels", &[&all[..], changes].concat())
@@ -66,7 +66,7 @@ fn straps_without_slack_bear_nothing_at_rest_and_leave_the_weight_where_it_is() 
     );
     println!("on the ground {} N, {} N, {} N", base(&bare), base(&loose), base(&tight));
     assert_eq!(base(&bare), base(&loose));
-    // They pull inside the stack only.
+    // The straps pull only between bodies of the stack.
     assert!((base(&tight) / base(&bare) - 1.0).abs() < 1e-6);
     // The stack is compliant: some of the pretension is lost, and none is gained.
     let still = run(

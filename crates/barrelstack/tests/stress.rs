@@ -172,13 +172,13 @@ fn bodies_that_meet_only_while_shaken_are_among_the_forces() {
     }
 }
 
-/// The largest size among values.
+/// Returns the largest absolute value.
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
-/// Samples (m/s²) at 200 Hz, of which one, between two pictures at any usual rate, is five times as large as all
-/// others.
+/// Returns samples (m/s²) at 200 Hz. One sample is five times as large as all others; at any usual frame rate, it lies
+/// between two pictures.
 fn spike() -> Vec<f64> {
     let wave = |k: usize| if k == 171 { -3.0 } else { 0.6 * (k as f64 * 0.09).sin() };
     (0..400).map(wave).collect()
@@ -210,7 +210,7 @@ fn peaks_of_the_ground_in_pictures_are_those_of_the_motion() {
     assert!((largest(&acceleration.values) / exact - 1.0).abs() < 1e-9);
     assert!(acceleration.times.is_sorted() && acceleration.times.len() < 110);
     assert_eq!(velocity.unit, "cm/s");
-    // The figure of the page is of the same samples.
+    // The figure of the page shows the same samples.
     let page = markdown(&document(&run, &Summary::of(&run, None)), "figures");
     let file = page.files.iter().find(|file| file.name == "ground-acceleration.csv").unwrap();
     let text = std::str::from_utf8(&file.bytes).unwrap();

@@ -18,7 +18,7 @@ fn scenario(name: &str, changes: &[&str]) -> Scenario {
     Scenario::builtin(name, &changes).unwrap()
 }
 
-/// Two levels that collapse under the paper's sine, shortened.
+/// Returns a stack of two levels that collapses under the sine of the paper, shortened to five cycles.
 fn two_levels(changes: &[&str]) -> Scenario {
     let own = [
         "stack.levels=2",
@@ -67,11 +67,11 @@ fn falls_are_counted_as_long_as_every_variant_is_followed_after_its_first_loss()
     scenario.run.stop_after_collapse = None;
     let whole = spread(&scenario);
     assert_eq!(whole.counted_for, Some(2.0));
-    // A duration that ends the last variant 0.3 s after its first loss of a seat.
+    // This duration ends the variant with the latest loss of a seat 0.3 s after that loss.
     let last = whole.first_loss.unwrap().most;
     scenario.run.duration = Some(last + 0.3);
     let cut = spread(&scenario);
-    // Measured: 0.3 s to within a step of 0.4 ms.
+    // Measured: 0.3 s, to within one step of 0.4 ms.
     assert!((cut.counted_for.unwrap() - 0.3).abs() < 1e-3, "{:?}", cut.counted_for);
     assert_eq!(cut.first_loss, whole.first_loss);
     assert!(words::course(&cut).ends_with(" within 0.3 s of that"), "{}", words::course(&cut));
@@ -138,7 +138,7 @@ fn the_range_over_uncertain_constants_comes_from_the_draws_of_the_variants() {
     let stated = whole.share_as_stated.unwrap();
     assert!(low < stated && stated < high && low < whole.share.unwrap(), "{whole:?}");
     let names: Vec<&str> = whole.decides.iter().map(|one| one.field).collect();
-    // The paper's constants have a coefficient of damping and no posts.
+    // The constants of the paper state a damping coefficient, and the rack of the paper has no posts.
     for field in ["stiffness", "damping", "friction.coefficient"] {
         assert!(names.contains(&format!("interface.barrel-rack.{field}").as_str()), "{names:?}");
     }
@@ -147,13 +147,13 @@ fn the_range_over_uncertain_constants_comes_from_the_draws_of_the_variants() {
     for one in &whole.decides {
         let [first, median, last] = one.low_median_high().unwrap();
         let median = median.value;
-        // The 5 % and the 95 % fractile of a lognormal distribution.
+        // Ratio of the 95 % fractile to the median, and of the median to the 5 % fractile, of a lognormal distribution.
         let reach = (1.644_854 * one.dispersion).exp();
         assert!((last.value / median / reach - 1.0).abs() < 1e-6, "{one:?}");
         assert!((median / first.value / reach - 1.0).abs() < 1e-6, "{one:?}");
         assert!(one.width_if_measured <= high - low + 0.05, "{one:?}");
     }
-    // A measured friction is drawn from its own scatter.
+    // A measured friction is drawn with its own, smaller dispersion.
     let measured = spread(&["unknowns.friction_barrel_rack=0.05"]);
     let friction = |spread: &Spread| {
         let all = spread.decides.iter();
@@ -164,14 +164,14 @@ fn the_range_over_uncertain_constants_comes_from_the_draws_of_the_variants() {
     };
     assert_eq!(friction(&measured).dispersion, 0.05);
     assert_ne!(friction(&whole).dispersion, 0.05);
-    // Places and masses alone have no range, nor have few variants.
+    // There is no range if only positions and masses vary, or if there are few variants.
     assert_eq!(spread(&["unknowns.drawn=false"]).range, None);
     assert_eq!(found(&planes(&two_levels(&[])).unwrap()).remove(0).spread.range, None);
 }
 
 #[test]
 fn variants_that_cannot_be_built_are_counted_and_widen_the_interval() {
-    // A barrel 20 mm off its place stands in its cradle; the stated one is less far off.
+    // The stated barrel is 18.5 mm off its place and can still be built; in some variants it is too far off.
     let mut stated = two_levels(&["imperfections.placement=5 mm"]);
     let Scene::Stack { stack, .. } = &mut stated.scene else { panic!("no stack") };
     stack.overrides.push(BodyOverride {
@@ -197,8 +197,8 @@ fn variants_that_cannot_be_built_are_counted_and_widen_the_interval() {
 
 #[test]
 fn what_falls_under_its_own_weight_counts_as_fallen_and_is_said_first() {
-    // Hardly shaken; six levels along the barrels do not stand in most variants on seats as soft as one contact
-    // node of the paper.
+    // The stack is hardly shaken. Its seats are as soft as one contact node of the paper, so most variants of six
+    // levels do not stand in the plane along the barrels.
     let scenario = scenario(
         "demo-napa",
         &[
@@ -256,7 +256,7 @@ fn each_plane_has_its_component_and_half_of_the_variants_have_them_exchanged() {
     assert_eq!(names(&along), [north, north, north, east, east]);
     let columns = |plane: &Plane| plane.scenario.stack().map(|stack| stack.columns);
     assert_eq!([columns(&across), columns(&along)], [Some(2), Some(1)]);
-    // The same stack is shaken in both.
+    // The same stack is shaken in both planes.
     let laws = |plane: &Plane| plane.variant(7).stack().unwrap().interfaces.clone();
     assert_eq!(laws(&across), laws(&along));
 }

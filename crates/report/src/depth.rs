@@ -8,10 +8,10 @@ use crate::{
     player_data::events,
 };
 
-/// Quantum of the points of action of forces (m): two millimeters, which is too little to be visible.
+/// Quantum (m) of the points at which forces act: two millimeters, which is too little to be visible.
 const POINT_QUANTUM: f64 = 1.0 / 512.0;
 
-/// Quantum of forces as a multiple of 2⁻¹⁶ of the largest component.
+/// Ratio of the quantum of forces to that of [`pack::quantum_for`], which is at most 2⁻¹⁶ of the largest component.
 const FORCE_STEPS: f64 = 64.0;
 
 /// A point or vector `[x, y, z]` (m): x across the barrels, y along them, z up; right-handed.
@@ -45,7 +45,7 @@ pub enum Volume {
     Block {
         /// Center (m).
         at: Point3,
-        /// Vectors (m) from the center to the middle of three faces.
+        /// Vectors (m) from the center of the cuboid to the centers of three adjacent faces.
         sides: [Point3; 3],
     },
     /// A ball.

@@ -27,7 +27,7 @@ pub struct Document {
 }
 
 impl Document {
-    /// Returns the blocks up to the first picture, and the blocks that follow the prose of the verdict.
+    /// Divides the blocks into those up to the first picture and all others, which follow the sentences of the verdict.
     ///
     /// The first picture is the first player or, without a player, a figure or table that opens the document.
     pub(crate) fn parted(&self) -> (&[Block], &[Block]) {
@@ -161,8 +161,8 @@ impl Block {
 /// Summary line of the collapsed section that contains [`Verdict::fine`].
 pub(crate) const FINE: &str = "The numbers behind the verdict";
 
-/// Returns the sentence that replaces, on paper, content that only the page on screen shows. The sentence states the
-/// numbers of the figures and tables of this content; the two counters are those before and after the content.
+/// Returns the sentence that replaces, on paper, content that only the page on screen shows. The sentence lists the
+/// numbers of the figures and tables in this content, which follow from the counters before and after the content.
 pub(crate) fn elsewhere(what: &str, [before, after]: [Counter; 2], language: Language) -> String {
     let numbers =
         [("figure", before.figures, after.figures), ("table", before.tables, after.tables)];

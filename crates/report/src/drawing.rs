@@ -92,7 +92,7 @@ pub(crate) struct Placed {
     pub(crate) pose: [f64; 3],
 }
 
-/// Horizontal alignment of text: the point of the text that lies at its position.
+/// Horizontal alignment of text: which point of the text (start, middle or end) lies at the given position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,

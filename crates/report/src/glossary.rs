@@ -49,7 +49,7 @@ impl Glossary {
                 "<button type=\"button\" class=\"term\" aria-describedby=\"word-{at}\" \
                  data-meaning=\"{meaning}\">{shown}</button>"
             );
-            // A line may break after a button, but not between a word and what belongs to it.
+            // A browser may break a line after a button, but not between a word and its ending or punctuation.
             let end = after.find(char::is_whitespace).unwrap_or(after.len());
             let (own, after) = after.split_at(if end <= MOST_JOINED { end } else { 0 });
             let joined = if own.is_empty() {

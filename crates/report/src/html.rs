@@ -290,7 +290,7 @@ impl<'a> Writer<'a> {
                 Block::Heading { level, text } => {
                     let level = (*level).clamp(2, 4);
                     self.glossary.again();
-                    // Folded headings are not listed and need no anchor.
+                    // Headings in collapsed content are not listed and need no anchor.
                     let open = if level == 2 && self.folded == 0 {
                         format!("<h2 id=\"{}\">", anchor(&mut self.anchors, text))
                     } else {

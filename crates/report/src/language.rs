@@ -39,7 +39,7 @@ impl Language {
         static SPANISH: OnceLock<Catalog> = OnceLock::new();
         match self {
             Self::English => None,
-            // The page in English that holds the program does not carry the half megabyte of the catalog.
+            // The English page that contains the program is built without the catalog, which takes half a megabyte.
             Self::Spanish if cfg!(all(target_arch = "wasm32", not(feature = "languages"))) => None,
             Self::Spanish => Some(
                 SPANISH.get_or_init(|| Catalog::of(include_str!("../assets/languages/es.toml"))),
@@ -90,7 +90,7 @@ impl FromStr for Language {
     }
 }
 
-/// Error for a code that is not the code of a page language.
+/// Error for a language code, such as "xx", for which there is no [`Language`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownLanguage(String);
 
@@ -130,7 +130,7 @@ struct Translator {
 /// Maximum depth of nested phrases.
 const DEEPEST: usize = 8;
 
-/// Largest number of matches of a text with one template that are compared.
+/// Maximum number of matches between a text and one template that are compared.
 const READINGS: usize = 24;
 
 impl Translator {
@@ -396,7 +396,7 @@ fn is_prose(text: &str) -> bool {
     })
 }
 
-/// `true` if a text is a quotation as a whole, from a file of the user.
+/// `true` if the whole text is a quotation from a file of the user.
 fn is_quotation(text: &str) -> bool {
     let inner = |mark| text.strip_prefix(mark).and_then(|rest| rest.strip_suffix(mark));
     inner('"').or_else(|| inner('`')).is_some_and(|inner| !inner.contains("\" "))

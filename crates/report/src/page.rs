@@ -271,8 +271,8 @@ impl Shell<'_> {
         hold_entries(&mut out, language, &self.all_scripts());
         let player: String = PLAYER.into_iter().chain(DEPTH).map(lean).collect();
         let own: String = self.scripts.iter().copied().map(lean).collect();
-        // In a block of its own, so that its constants may have the same names as those of the
-        // player.
+        // The scripts of the page are in a block of their own, so that their constants may have the same
+        // names as those of the player.
         out += &strict(&format!("{player}{{\n{own}}}\n"));
         for (id, packed) in self.held {
             hold(&mut out, "text/plain", id, &pack::letters(packed));

@@ -467,7 +467,7 @@ impl<'a> Flow<'a> {
                 open = false;
             }
             if let (false, Some(head)) = (open, &head) {
-                // A repeated head is decoration, not content.
+                // A repeated header row is tagged as decoration, not as content.
                 self.row(sheet, head, "page-small-bold", (at == 0).then_some(StructRole::TH));
                 self.rule("page-line");
             }

@@ -123,7 +123,7 @@ impl Series {
         Self { label: label.into(), x, y, ..Self::default() }
     }
 
-    /// Creates a thick bar in each of the given rows of an axis with names, between its two ends on the x axis.
+    /// Creates thick bars for an axis with names; each bar is given as its row and the values of x at its two ends.
     pub fn bars(
         label: impl Into<String>,
         bars: impl IntoIterator<Item = (usize, [f64; 2])>,

@@ -24,15 +24,15 @@ use crate::{
 ///
 /// - Bodies: closed outlines are polygons, open outlines and marks are lines. Cells carry `body`
 ///   (the index in the scene), `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device) and
-///   `displacement` (m), that of the origin of the body from the first frame. Bodies without a
-///   finite pose are left out.
+///   `displacement` (m): the displacement vector of the origin of the body since the first frame.
+///   Bodies without a finite pose are left out.
 /// - Forces: a vertex at each point of contact, with `force` (N) as a vector.
 pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     let frames = sampled(scene, rate);
     let digits = frames.len().to_string().len().max(4);
     let mut index = opened_index();
-    // The ground is hundreds of meters long, and a viewer fits its first picture to the whole
-    // scene.
+    // The ground is hundreds of meters long, and a viewer fits its first picture to everything in the
+    // file, so only the part of the ground near the stack is written.
     let view = window(scene, &frames);
     let sight = [view.lower[0] - view.width(), view.upper[0] + view.width()];
     let mut files = Vec::new();
@@ -164,7 +164,7 @@ impl Mesh {
     }
 }
 
-/// Returns the three coordinates of a point of the plane of the scene.
+/// Converts a point in the plane of the scene to a three-dimensional point.
 fn in_space([x, z]: &Point) -> [f64; 3] {
     [*x, 0.0, *z]
 }

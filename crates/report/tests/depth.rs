@@ -18,7 +18,8 @@ fn barrel(name: &str) -> DepthBody {
     }
 }
 
-/// A turn about the vertical that goes on around, in quaternions of one half alone: their sign jumps at half a turn.
+/// Returns a pose that rotates about the vertical by more than half a turn. The scalar part of its quaternion is never
+/// negative, so the sign of the quaternion jumps at half a turn.
 fn turning(frame: usize) -> Pose3 {
     let half = 0.05 * frame as f64;
     let sign = if half.cos() < 0.0 { -1.0 } else { 1.0 };
@@ -52,7 +53,7 @@ fn equal_solids_are_written_once_and_a_moment_without_a_time_is_left_out() {
     );
     assert_eq!(depth["bodies"][1]["shape"], depth["bodies"][2]["shape"]);
     assert_eq!(depth["plane"], "across");
-    // A path belongs to the trace with its index, so a path of a body that is missing keeps its place.
+    // A path belongs to the trace with the same index, so the path of a missing body stays in the list.
     assert_eq!(depth["paths"], json!([2, 3]));
     assert!(depth["poses"].is_null() && depth["moment"].is_null());
     assert_eq!(depth["events"][0]["text"], "B1 falls");
@@ -67,7 +68,7 @@ fn quaternions_keep_their_turn_and_their_sign_does_not_jump() {
     assert_eq!(channels.len(), 21);
     for frame in 0..count {
         let pose: Vec<f64> = (7..14).map(|channel| channels[channel][frame]).collect();
-        // A quaternion and its negative are one turn.
+        // A quaternion and its negative describe the same rotation.
         let same: f64 = pose[3..].iter().zip(&turning(frame)[3..]).map(|(a, b)| a * b).sum();
         assert!((same.abs() - 1.0).abs() < 2.0 * POSE_QUANTUM, "frame {frame}: {same}");
         assert_eq!(pose[..3], [0.5, -0.25, 1.0]);
@@ -120,6 +121,6 @@ fn only_pages_with_depth_hold_three_js_with_its_license() {
     let with = html(&document(vec![player(deep(DepthPoses::Along, 20))]));
     let without = html(&document(vec![player(scene(2, 20))]));
     assert!(with.contains(held) && !without.contains(held));
-    // 150 kB in gzip, of which base 85 makes a quarter more.
+    // 150 kB compressed with gzip; base 85 adds a quarter.
     assert!(with.len() - without.len() < 190_000, "{} bytes", with.len() - without.len());
 }

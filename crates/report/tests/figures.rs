@@ -223,7 +223,7 @@ fn the_hatch_of_the_ground_covers_the_picture_and_not_the_county() {
 
 #[test]
 fn a_strip_holds_only_the_bodies_that_it_shows() {
-    // A body in space has a drawing for each direction of view; most are needed only between the panels.
+    // A three-dimensional body has a drawing for each direction of view; most directions occur only between the panels.
     let mut scene = scene(3, 60);
     for (frame, poses) in scene.frames.poses.iter_mut().enumerate() {
         if frame != 7 {

@@ -1,6 +1,6 @@
 //! Pages: their text, figures, players and data.
 //!
-//! One program, since each would compile and link what it tests anew.
+//! All tests are in one program, since every further test program would have to be compiled and linked.
 
 #![allow(clippy::unwrap_used, reason = "tests and their helpers fail by panicking")]
 

@@ -105,7 +105,7 @@ fn hostile_text_never_becomes_markup() {
     assert!(!markup.contains("\"a\""), "a quote would end an attribute");
     assert!(markup.contains("&lt;/script&gt;"));
     assert!(!page.contains('\u{0}') && !page.contains('\u{7}'));
-    // Data, library, own code: three scripts, whatever the texts say.
+    // The page has three scripts (data, library, own code), whatever its texts contain.
     assert_eq!(page.matches("<script").count(), 3);
     assert_eq!(page.matches("</script").count(), 3);
 }
@@ -287,7 +287,7 @@ fn a_program_that_a_page_holds_cannot_end_its_script_and_may_request_nothing() {
     };
     let page = shell.html();
     assert!(page.contains("\nlet kept = 1;\n") && !page.contains("of no use there"));
-    // Data loaded last stand after the scripts.
+    // Data that are loaded last follow the scripts.
     assert!(page.rfind("id=\"engine\"") > page.find("let kept"));
     for page in [report, shell.html()] {
         assert!(!page.contains(HOSTILE));

@@ -1,9 +1,9 @@
-//! The series of bodies in space for ParaView, read by a parser of its own.
+//! The ParaView series of three-dimensional bodies, read by an independent parser.
 
 use crate::common::Vtk;
 use barrelstack_report::{Role, SolidBody, SolidTie, Solids, paraview_of_solids};
 
-/// A tetrahedron of a level.
+/// Returns a tetrahedron on a level.
 fn tetrahedron(name: &str, level: u32) -> SolidBody {
     SolidBody {
         name: name.into(),
@@ -18,7 +18,7 @@ fn tetrahedron(name: &str, level: u32) -> SolidBody {
 fn paraview_sees_bodies_in_space_where_they_are_and_as_they_move() {
     let rest = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
     let quarter = 0.5_f64.sqrt();
-    // A quarter turn about z, and moved.
+    // A quarter turn about z, and a displacement.
     let moved = [2.0, 3.0, 4.0, quarter, 0.0, 0.0, quarter];
     let lost = [f64::NAN; 7];
     let solids = Solids {
@@ -35,7 +35,7 @@ fn paraview_sees_bodies_in_space_where_they_are_and_as_they_move() {
     })
     .unwrap();
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    // The second frame is not due.
+    // The second frame follows too soon after the first and is left out.
     assert_eq!(names, ["bodies-0000.vtp", "bodies-0001.vtp", "bodies.csv", "stack.pvd"]);
     assert_eq!(
         String::from_utf8_lossy(&files[2].1),
@@ -56,16 +56,16 @@ fn paraview_sees_bodies_in_space_where_they_are_and_as_they_move() {
     assert_eq!(first.whole("Polys", "connectivity")[12..15], [4, 6, 5]);
     assert_eq!(first.whole("Polys", "offsets"), [3, 6, 9, 12, 15, 18, 21, 24]);
 
-    // A lost body is left out entirely.
+    // A body whose pose is not finite is left out entirely.
     let last = Vtk::of(&files[1].1);
     assert_eq!(last.whole("CellData", "body"), [0; 4]);
     let near = |found: &[f32; 3], exact: [f32; 3]| {
         found.iter().zip(exact).all(|(found, exact)| (found - exact).abs() < 1e-6)
     };
-    // The corner on x goes to y.
+    // The quarter turn moves the corner on the x axis to the direction of y.
     assert!(near(&last.vectors("Points", "points")[1], [2.0, 4.0, 4.0]));
     assert!(near(&last.vectors("CellData", "displacement")[1], [2.0, 3.0, 4.0]));
-    // Its center moves along x, and it rotates about it.
+    // The velocity of this corner is that of the origin, along x, plus that of the rotation about the origin.
     assert!(near(&last.vectors("PointData", "velocity")[1], [-1.0, 0.0, 0.0]));
 }
 
@@ -93,7 +93,7 @@ fn paraview_sees_straps_until_they_tear() {
     .unwrap();
     assert!(files[2].ends_with(b"2,two-one left,device,0\n"));
     let tree = Vtk::of(&files[0]);
-    // The line comes before the triangles, and its points before theirs.
+    // The line precedes the triangles, and the points of the line precede those of the triangles.
     assert_eq!(tree.whole("CellData", "body"), [2, 0, 0, 0, 0, 1, 1, 1, 1]);
     assert_eq!(tree.whole("CellData", "role")[0], Role::Device as usize);
     assert_eq!(tree.vectors("Points", "points")[..2], [[1.0, 0.0, 3.0], [1.0, 0.0, 0.5]]);

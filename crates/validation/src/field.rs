@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! observations.toml ─┐
-//! cases/*.csv ───────┴─▶ fit of the chance to fall ─▶ likelihoods, posterior ─▶ field.md, tables, figure
+//! cases/*.csv ───────┴─▶ fitted probability of a fall ─▶ likelihoods, posterior ─▶ field.md, tables, figure
 //! ```
 //!
 //! [`evaluate`] is a function of the observations and the simulated cases alone, so that a test can check the page
@@ -22,7 +22,7 @@ pub use chance::{Chance, MEDIANS, Point};
 pub use results::{Bin, Posterior, Results, Share};
 pub use weigh::Range;
 
-/// Error of a file of observations or of cases.
+/// Reason why the hindcasts cannot be evaluated, such as an invalid file of observations or cases.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct FieldError(pub String);

@@ -77,7 +77,7 @@ impl Rocker {
 
     /// Returns the rotation (rad) and the angular velocity (rad/s) after a time (s) of rocking on one corner.
     ///
-    /// Takes a number of equal steps from `start`, the state at time zero, whose rotation is positive.
+    /// Takes equal steps from the state `start` at time zero, and assumes that the rotation stays positive.
     pub(crate) fn stretch(
         &self,
         start: (f64, f64),

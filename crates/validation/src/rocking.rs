@@ -39,7 +39,7 @@ pub struct RockingBlock {
 }
 
 impl RockingBlock {
-    /// Creates a block on speed-gap corners of a stiffness that suits its size.
+    /// Creates a block with stiff, critically damped corners and the contact law [`Corner::SpeedGap`].
     pub fn new(radius: f64, alpha: f64) -> Self {
         Self {
             radius,
@@ -50,7 +50,7 @@ impl RockingBlock {
         }
     }
 
-    /// Returns the block with its corners made four times as stiff by each refinement.
+    /// Returns the block after a number of refinements, each of which makes the corners four times as stiff.
     #[must_use]
     pub fn refined(mut self, refinements: i32) -> Self {
         self.contact_frequency *= 2.0_f64.powi(refinements);

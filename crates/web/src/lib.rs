@@ -8,8 +8,8 @@
 //!   "records": [["site.at2", 81920]] }
 //! ```
 //!
-//! The answer equals the output of the command for the same scenario, byte for byte except for
-//! computation times. The engine opens no files, makes no system calls, and sends nothing. The
+//! The answer equals the output of the command-line program for the same scenario, byte for byte,
+//! except for computation times. The engine opens no files, makes no system calls, and sends nothing. The
 //! interface to a page is [four functions and one
 //! import](https://webassembly.github.io/spec/core/), written by hand, so that no glue code is
 //! generated:
@@ -78,7 +78,8 @@ pub enum RequestKind {
     /// then the bytes of motions that are combined from several files. The request needs no
     /// scenario.
     Records,
-    /// The motion of a variant, as JSON. The first entry of `numbers` selects the variant; 0 is the stack as stated.
+    /// The moving picture of a variant and its result, as JSON. The first entry of `numbers` selects the variant; 0 is
+    /// the stack as stated.
     Show,
     /// The results of the variants `numbers` in each plane, as JSON; then the paths of their barrels (the trails) as
     /// bytes, for a report.
@@ -90,9 +91,9 @@ pub enum RequestKind {
     Summary,
     /// The report of a run and its variants, as a page.
     Report,
-    /// All files that the command writes for a run and its variants, including the report, in the
-    /// form of a request whose head lists the names and lengths of the files. If the results of all
-    /// variants are given, no variant is run again.
+    /// All files that the command-line program writes for a run and its variants, including the
+    /// report, encoded like a request: the head lists the names and lengths of the files, and their
+    /// bytes follow. If the results of all variants are given, no variant is run again.
     Files,
 }
 
@@ -181,10 +182,11 @@ pub fn answered(
     answered_in(language, opened, observer).map_err(|refusal| refused(&refusal, language))
 }
 
-/// Start of the list of the keys or names that are valid in a place.
+/// Text in an error message that precedes the list of valid keys or names.
 const VALID: &str = "valid here: ";
 
-/// Translates a message line by line; places, lines of the scenario after a `|`, and valid keys are not translated.
+/// Translates a message line by line. Not translated are places in files, quoted lines of the scenario (which follow
+/// a `|`), and lists of valid keys.
 fn refused(message: &str, language: Language) -> String {
     let line = |line: &str| {
         let start = line.find(|c: char| c.is_alphabetic() || c == '`').unwrap_or(line.len());
@@ -296,7 +298,7 @@ fn some(
     Ok(enveloped(&json(&cases)?, &[&trails::written(trails)]))
 }
 
-/// The motion of a variant.
+/// The moving picture of a variant, with its result.
 #[derive(Serialize)]
 struct Shown<'a> {
     variant: u32,

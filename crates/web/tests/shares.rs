@@ -97,7 +97,7 @@ fn a_look_lists_every_field_and_stands_still() {
     let data: Value = serde_json::from_str(look["stage"]["data"].as_str().unwrap()).unwrap();
     assert_eq!(data["players"][0]["panes"].as_array().map(Vec::len), Some(2));
     assert_eq!(data["players"][0]["panes"][0]["poses"]["n"], 1);
-    // The South Napa record is strong from 5.0 s on, and an opening lasts 3 s from there.
+    // The strong motion of the South Napa record begins at 5.0 s, and the opening ends 3 s later.
     assert!(
         look["opening"].as_f64().is_some_and(|end| (8.0..=9.0).contains(&end)),
         "{}",
@@ -174,13 +174,13 @@ fn files_given_at_once_are_one_record_or_several_or_reported_as_none() {
     // A horizontal and a vertical component.
     let (pair, _) = given(&[("h.txt", e.clone()), ("v.txt", up)]);
     assert_eq!(pair["motions"].as_array().unwrap().len(), 1);
-    // Two stations are two motions, each the file as given.
+    // Files of two stations are two motions, each identical to its file.
     let (two, bytes) = given(&[("a.txt", e.clone()), ("b.txt", text("Napa", "Other", "E az=90"))]);
     let names: Vec<&Value> =
         two["motions"].as_array().unwrap().iter().map(|one| &one["name"]).collect();
     assert_eq!(names, ["a.txt", "b.txt"]);
     assert!(bytes.is_empty());
-    // A picture is no record, and does not affect files beside it; a column of numbers lacks its unit.
+    // A picture is not a record and does not affect the other files; the unit of a column of numbers is missing.
     let numbers: Vec<String> = (0..600).map(|at| f64::from(at).sin().to_string()).collect();
     let column = numbers.join("\n");
     let (some, _) =

@@ -20,7 +20,7 @@ enum Topic {
 
 /// Names every run by its differences, such as "five levels" or "with straps".
 ///
-/// If the runs differ in more than a name can state, the given names are kept.
+/// If there are more differences than a name can state, the given names are kept.
 pub fn labels(runs: &[(String, Scenario)]) -> Vec<String> {
     let differing = differences(runs.iter().map(|(_, scenario)| scenario));
     let mut topics: Vec<(Topic, &Difference)> = Vec::new();
@@ -61,8 +61,8 @@ pub fn labels(runs: &[(String, Scenario)]) -> Vec<String> {
     distinct(names)
 }
 
-/// Names runs by the inputs that differ, such as "block 1 spacing 1"; with more inputs than a name can state, the given
-/// names are kept.
+/// Names runs by the inputs that differ, such as "block 1 spacing 1". If more inputs differ than a name can state, the
+/// given names are kept.
 pub fn labels_by(names: &[String], differing: &[Difference]) -> Vec<String> {
     let name = |(at, name): (usize, &String)| {
         if differing.is_empty() || differing.len() > MOST {

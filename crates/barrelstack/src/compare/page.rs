@@ -71,8 +71,8 @@ fn singles(side: &Side) -> impl Iterator<Item = (Option<View>, &Outcome)> {
     shown.chain(side.other.iter().map(|other| (Some(other.view), &other.outcome)))
 }
 
-/// Returns the planes in which a single run collapses, such as " (along the barrels)"; empty unless
-/// both planes were analyzed.
+/// Returns words for the planes in which a single run collapses, such as " (along the barrels)";
+/// empty unless both planes were analyzed.
 fn falls_where(side: &Side) -> String {
     let falls = singles(side).filter(|(_, outcome)| outcome.is_collapse());
     let views: Vec<&str> = falls.filter_map(|(view, _)| Some(view?.words())).collect();
@@ -112,8 +112,8 @@ fn stands(side: &Side) -> bool {
     }
 }
 
-/// Describes the change of the number of collapses from the first run to the others, in paired
-/// variants; `None` if a run has no variants.
+/// Describes how the number of collapses changes from the first run to every other run, counted over
+/// paired variants; `None` if a run has no variants.
 fn effect(sides: &[Side]) -> Option<String> {
     let (first, others) = sides.split_first()?;
     let pairs: Vec<Vec<Paired>> = others.iter().map(|other| Paired::of(first, other)).collect();
@@ -169,15 +169,16 @@ fn effect(sides: &[Side]) -> Option<String> {
     Some(format!("{cause}, {}.", clauses.join("; ")))
 }
 
-/// Returns the plane of a pair, such as " across the barrels"; empty unless both planes were
-/// analyzed.
+/// Returns words for the plane of a paired comparison, such as " across the barrels"; empty unless
+/// both planes were analyzed.
 fn place(side: &Side, pair: &Paired) -> String {
     let view = View::ALL.into_iter().find(|view| Some(view.name()) == pair.view);
     let both = view.filter(|_| side.other.is_some());
     both.map_or_else(String::new, |view| format!(" {}", view.words()))
 }
 
-/// Describes the differences between the shares of collapses, with their intervals.
+/// Describes, for each run after the first, how its share of collapses differs from that of the first
+/// run, with the 95 % interval of the difference.
 fn differences_in(sides: &[Side]) -> Vec<String> {
     let Some((first, others)) = sides.split_first() else { return Vec::new() };
     let of = |(at, other): (usize, &Side)| {
@@ -262,8 +263,8 @@ fn headline(sides: &[Side]) -> String {
     }
 }
 
-/// States that runs end before their motion does; empty unless a stack stands at the end of such a
-/// run.
+/// Returns the warning that runs end before their ground motion does; empty unless a stack still
+/// stands at the end of such a run.
 fn cut_short(sides: &[Side]) -> String {
     let cut = |side: &Side| match share(side) {
         Some(spread) => spread.standing_until.is_some(),
@@ -405,8 +406,8 @@ fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
     motions.all(|motion| Some(motion) == first)
 }
 
-/// Returns the ground motions to draw below the stages. If all runs have the same motion, the
-/// motion of the longest run is drawn; otherwise the motion of each run is drawn.
+/// Returns the ground motions to draw below the players. If all runs have the same motion, that of
+/// the longest run is drawn; otherwise, the motion of each run is drawn.
 fn lanes(sides: &[Side]) -> Vec<History> {
     if one_motion(sides) {
         let longest = sides.iter().max_by(|a, b| a.end_time.total_cmp(&b.end_time));

@@ -144,7 +144,7 @@ mod tests {
             // A share of 95 % of 4,000 samples has a standard deviation of 0.3 %.
             assert!(f64::from(covered) >= 0.94 * 4000.0, "{chances:?}: {covered}");
         }
-        // Equal runs differ by nothing, and the interval is symmetric about zero.
+        // Between two equal runs, the difference is zero and its interval is symmetric about zero.
         let (difference, [low, high]) = newcombe([5, 0, 0, 5]).unwrap_or_default();
         assert!(difference == 0.0 && low < 0.0 && (low + high).abs() < 1e-12, "{low} {high}");
         assert_eq!(newcombe([0; 4]), None);

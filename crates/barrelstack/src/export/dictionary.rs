@@ -77,8 +77,8 @@ const MEANINGS: [(&str, &str); 39] = [
     ("_qz", "third imaginary part of the quaternion"),
 ];
 
-/// Returns the file `columns.csv` of a folder: file, name, unit and meaning of each column of its
-/// tables.
+/// Returns the name `columns.csv` and the contents of this file, which lists the file, name, unit and
+/// meaning of every column of the tables in a folder.
 ///
 /// `other` returns the meanings of columns that only some folders have.
 pub fn dictionary(

@@ -72,8 +72,8 @@ impl Section<'_> {
         }
     }
 
-    /// Returns the distances (m) of parallel parts from the plane: those of the rails in the
-    /// transverse plane, those of the barrels in the longitudinal plane.
+    /// Returns the distances (m) from the plane at which parallel parts lie: the rails if the plane
+    /// is transverse, the barrels if it is longitudinal.
     fn away(&self) -> Vec<f64> {
         let rack = &self.spec.rack;
         match self.spec.view {
@@ -87,7 +87,7 @@ impl Section<'_> {
         self.spec.barrel.length + self.spec.gap
     }
 
-    /// Returns the positions (m) of the barrels that one body of the plane represents.
+    /// Returns the positions (m) of the barrels that one barrel of the planar model represents.
     fn rows(&self) -> Vec<Point3> {
         let rack = &self.spec.rack;
         let places = match self.spec.view {
@@ -115,7 +115,7 @@ impl Section<'_> {
     fn rack(&self, assembly: &Assembly, index: usize, part: &Part) -> Vec<Volume> {
         let spec = self.spec;
         let surfaces = &assembly.model.bodies()[index].surfaces;
-        // If the rails are at two heights, the center of mass of the rack is beside its middle.
+        // If the rails are at two heights, the center of mass is not in the middle of the rack.
         let places = surfaces.iter().zip(&part.outlines).flat_map(|(_, outline)| &outline.points);
         let [low, high] = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
             [low.min(point.x), high.max(point.x)]
@@ -318,7 +318,7 @@ mod tests {
     fn along(volumes: &[Volume], axis: usize) -> [f64; 2] {
         extent(volumes.iter().flat_map(|volume| match volume {
             Volume::Tube { ends: [a, b], radius } => {
-                // The round end of a tube extends beyond the axis only sideways.
+                // A tube has flat ends, so beyond the ends of its axis it extends only sideways.
                 let away: f64 = (0..3).map(|k| (b[k] - a[k]).powi(2)).sum::<f64>().sqrt();
                 let part = if away > 0.0 { (b[axis] - a[axis]) / away } else { 0.0 };
                 let reach = radius * (1.0 - part * part).max(0.0).sqrt();
@@ -339,8 +339,8 @@ mod tests {
         }))
     }
 
-    /// The three-dimensional bodies must have the extents of the computed ones: all bodies in the
-    /// transverse plane; in the longitudinal plane the barrels, and the length and underside of the
+    /// The three-dimensional bodies must have the same extents as the planar bodies: in the transverse
+    /// plane, all bodies; in the longitudinal plane, the barrels, and the length and underside of the
     /// racks.
     #[test]
     fn bodies_have_the_extents_of_their_plane() {

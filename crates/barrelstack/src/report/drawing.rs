@@ -294,10 +294,10 @@ pub(crate) fn ground_acceleration(label: &str, component: &motion::History, end:
     ground_history(label, "g", (component.natural_step(), end), &value)
 }
 
-/// Returns the samples that a picture shows of a quantity of the ground motion, until `end` (s).
+/// Reduces a quantity of the ground motion to the samples that a picture shows, until `end` (s).
 ///
-/// The samples of the motion are `step` (s) apart. In every fiftieth of a second, the sample with
-/// the largest magnitude is kept at its own time, so that the picture shows the true peaks.
+/// The given samples are `step` (s) apart. In every fiftieth of a second, the sample with the
+/// largest magnitude is kept at its own time, so that the picture shows the true peaks.
 pub fn ground_history(
     label: &str,
     unit: &str,

@@ -275,7 +275,7 @@ pub(super) fn details(
         sentences.push(behind(&shown(run, summary), &sentence));
     }
     sentences.extend(summary.devices.0.iter().filter_map(device));
-    // Each plane, and each half of the variants, has its own component of the motion.
+    // The component of the motion depends on the plane and on the half of the variants, so the sentence names the run.
     let shaken = summary.motion.as_ref().map(shaking);
     sentences.extend(shaken.map(|sentence| behind(&shown(run, summary), &sentence)));
     let judged = matches!(run.outcome, Outcome::Stable | Outcome::Collapse { .. });
@@ -338,7 +338,7 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
             motion(&format!(" {}", view.words()), own, &[]);
             let beside =
                 if view == View::Transverse { View::Longitudinal } else { View::Transverse };
-            // Steps that both motions share are stated once.
+            // Processing steps that both components of the motion share are stated once.
             motion(&format!(" {}", beside.words()), &other.provenance.motion, own);
         }
         _ => motion("", own, &[]),

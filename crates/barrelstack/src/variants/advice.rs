@@ -65,8 +65,8 @@ impl Remedy {
     }
 
     /// States, for each sufficient change, the range of the share that falls as the uncertain constants vary. If two
-    /// changes suffice, also states in which share of the random draws of these constants fewer stacks fall with the
-    /// better change. Returns an empty text if a range is unknown.
+    /// changes suffice, also compares them: names the change with which fewer stacks fall in most random draws of these
+    /// constants, and states the share of such draws. Returns an empty text if a range is unknown.
     fn over_constants(&self) -> String {
         let range = |one: &Tried| {
             one.range.map(|[low, high]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high))
@@ -104,7 +104,7 @@ impl Remedy {
         )
     }
 
-    /// States the upper confidence bounds of the shares that fall with the sufficient changes,
+    /// States, for each sufficient change, the upper confidence bound of the share that falls,
     /// adjusted for the number of candidates.
     fn confidence(&self) -> String {
         let at_most = |one: &Tried| one.interval.map(|[_, high]| percent(high));

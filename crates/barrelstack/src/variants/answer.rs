@@ -108,7 +108,7 @@ pub(crate) fn common_number<A: Comparable>(answers: &[&A]) -> Result<Option<u32>
     for answer in answers {
         found.push(planes(answer.scenario())?);
     }
-    // Components of the motion for a variant number and a plane, over the scenarios that have the
+    // For a variant number and a plane, the component of the motion in every scenario that has this
     // plane.
     let components = |number: u32, view: Option<View>| {
         let planes = found.iter().flatten().filter(move |plane| plane.view() == view);
@@ -227,7 +227,7 @@ fn answered(
         summary.ensemble = variants.as_ref().map(|variants| variants.spread.clone());
         shown.push(Shown { run, summary, variants, stopped });
     }
-    // Of two equal planes the first governs, which is the plane across the barrels.
+    // If both planes are equally severe, the first governs: the plane across the barrels.
     let worst = (1..shown.len())
         .fold(0, |worst, at| if weight(&shown[at]) > weight(&shown[worst]) { at } else { worst });
     let mut decides = shown.remove(worst);
@@ -297,7 +297,7 @@ fn run_selected(
 ) -> Result<Vec<Run>, RunFailure> {
     let scenarios: Vec<Scenario> =
         tasks.iter().map(|(plane, number)| plane.variant(*number)).collect();
-    // The scenario as given, with both planes.
+    // Each run states the scenario as given, with both planes.
     let stated = |_, run| Run { stated: Box::new(scenario.clone()), ..run };
     let run = |scenario: &Scenario, observer: Watching<'_>| scenario.run_watched(observer);
     run_together(&scenarios, 0.0, &mut |now| report(Advance::Run(now)), &run, &stated)

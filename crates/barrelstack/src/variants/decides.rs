@@ -1,5 +1,5 @@
-//! Range of the share of collapses over the uncertain constants of the seats, and the constant that
-//! decides the result.
+//! Range of the share of collapses as the uncertain constants of the seats vary, and the constant
+//! that decides the result.
 
 use barrelstack_fragility::{Conditional, DrawnRun, Influence, conditional, normal_quantile};
 use barrelstack_motion::Random;
@@ -11,7 +11,7 @@ use super::{Plane, Spread};
 use crate::ensemble::CaseResult;
 use crate::scenario::{Basis, Damping, Friction, Interface, NormalLaw, StackInterfaces, Unknowns};
 
-/// Smallest change of the share of collapses, over the range of a constant, for which the constant is decisive.
+/// Minimum effect of a decisive constant: the change of the share of collapses over the range of the constant.
 const DECISIVE: f64 = 0.2;
 
 /// Fractiles of a constant at which the share of collapses is given.
@@ -74,8 +74,8 @@ impl Unknown {
         self.effect() >= DECISIVE && self.difference[0] > 0.0
     }
 
-    /// Returns the unit in which pages state the constant, empty for a pure number, and the factor
-    /// from the SI unit.
+    /// Returns the unit in which pages state the constant (empty for a pure number), and the factor
+    /// that converts a value from the SI unit to this unit.
     pub fn shown_unit(&self) -> (String, f64) {
         match self.unit {
             "1" => (String::new(), 1.0),
@@ -370,9 +370,9 @@ fn correlations(constants: &[Drawn], of_friction: f64) -> Vec<Vec<f64>> {
     all.clone().map(|i| all.clone().map(|j| between(i, j)).collect()).collect()
 }
 
-/// Fits the share of collapses to the results of the nominal case and of its variants, which are in
-/// the order of their numbers. Returns `None` if the variants do not differ in their constants,
-/// if a variant has no verdict, or if there are too few variants.
+/// Fits the regression of the share of collapses to `results`, the results of the nominal case and of its variants in
+/// the order of their numbers. Returns `None` if the variants do not differ in their constants, if a variant has no
+/// verdict, or if there are too few variants.
 pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     let verdicts: Vec<Option<bool>> = results.get(1..)?.iter().map(verdict).collect();
     let (fitted, constants) = fit(plane, &verdicts)?;
@@ -380,9 +380,9 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     Some(Fitted::of(&fitted, &constants))
 }
 
-/// Returns the share of collapses in every draw, in the plane in which the share is larger; `None` as in [`range`].
-/// Each draw samples the uncertain constants and the error of the regression, and has the same constants for all stacks
-/// with the same planes. `verdicts` holds the verdicts of the variants in every plane.
+/// Returns, for every draw of the uncertain constants, the share of collapses in the plane in which it is larger. Each
+/// draw also samples the error of the regression. The same draw has the same constants for all stacks with the same
+/// planes. `verdicts` holds the verdicts of the variants in every plane. Returns `None` in the same cases as [`range`].
 pub(super) fn draws(planes: &[Plane], verdicts: &[Vec<Option<bool>>]) -> Option<Vec<f64>> {
     let of = |(plane, verdicts): (&Plane, &Vec<_>)| Some(fit(plane, verdicts)?.0.shares());
     let shares = planes.iter().zip(verdicts).map(of).collect::<Option<Vec<Vec<f64>>>>()?;
@@ -392,8 +392,8 @@ pub(super) fn draws(planes: &[Plane], verdicts: &[Vec<Option<bool>>]) -> Option<
     shares.into_iter().reduce(larger)
 }
 
-/// Fits the share of collapses to the verdicts of the variants, which are in the order of their numbers, and returns it
-/// with its constants.
+/// Fits the regression of the share of collapses to the verdicts of the variants, in the order of their numbers, and
+/// returns it with its predictors, the uncertain constants.
 fn fit(plane: &Plane, verdicts: &[Option<bool>]) -> Option<(Conditional, Vec<Drawn>)> {
     let imperfections = plane.scenario.imperfections()?;
     let unknowns = plane.scenario.unknowns()?;

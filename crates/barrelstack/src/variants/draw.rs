@@ -7,13 +7,13 @@ use crate::scenario::{
     Unknowns,
 };
 
-/// Random quantities that the whole stack shares, in the order of their axes in the sequence of
-/// points.
+/// Random quantities that the whole stack shares, in the order of their axes. A variant is a point in
+/// the unit cube that these axes span.
 ///
-/// The axes of the shared quantities are followed by two axes per body. In space, these are
-/// followed by one more axis per body, for the position along the barrels; the first row of the
-/// stack therefore draws the same values as in the plane across the barrels. Quantities that were
-/// added later have axes beyond those of any body, so that all others keep their values.
+/// The axes of the shared quantities are followed by two axes per body. In three dimensions, one more
+/// axis per body follows, for the position along the barrels. The first row of the stack therefore has
+/// the same values as a stack in the plane across the barrels. Quantities that were added to the
+/// program later have axes beyond those of all bodies, so that the other quantities keep their values.
 #[derive(Clone, Copy)]
 pub(super) enum Shared {
     FrictionGround,
@@ -90,7 +90,7 @@ pub(super) fn excess(largest: f64, deviate: f64) -> f64 {
     1.0 + largest * normal(deviate)
 }
 
-/// Returns the standard normal deviate of a constant in the variant with the given number, starting from 1.
+/// Returns the standard normal deviate of a constant in a variant; the numbers of variants start from 1.
 pub(super) fn deviate(
     imperfections: &Imperfections,
     unknowns: &Unknowns,
@@ -341,7 +341,7 @@ mod tests {
         assert!((found - 0.6).abs() < 0.02, "{found}"); // measured 0.006
         let scatter = product(0, 0).sqrt();
         assert!((scatter / 0.25 - 1.0).abs() < 0.05, "{scatter}"); // measured 0.026
-        // Positions and all other constants are those of independent factors.
+        // The correlation changes neither the positions nor the other constants.
         let (plain, one) = (drawn(&[], 3), drawn(&change, 3));
         let (plain, one) = (plain.stack().unwrap(), one.stack().unwrap());
         assert_eq!(plain.overrides, one.overrides);

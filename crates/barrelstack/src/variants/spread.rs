@@ -124,8 +124,8 @@ impl Range {
 }
 
 impl Spread {
-    /// Summarizes the results in a plane, of which the first is that of the nominal case; `None`
-    /// for a scene without variants.
+    /// Summarizes the results in a plane; the first result is that of the nominal case. Returns
+    /// `None` for a scene without variants.
     pub fn of(plane: &Plane, results: &[CaseResult]) -> Option<Self> {
         let imperfections = plane.scenario.imperfections()?;
         let unknown = plane.scenario.unknowns()?;
@@ -145,8 +145,8 @@ impl Spread {
         let staves = || judged().filter_map(|result| result.demands.stave_utilization);
         let order = Order::of(results);
         let unknowns = decides::range(plane, results);
-        // The duration of a run may end a variant sooner; the tolerance covers the rounding of time
-        // differences.
+        // `run.duration` may end a variant before this time has passed; the tolerance covers the
+        // rounding of time differences.
         let after = plane.counted_for();
         let cut = shaken().filter(|result| result.cut.is_some_and(|left| left > 0.0));
         let cut = cut.filter_map(|result| Some(result.end_time? - loss(result)?));

@@ -15,8 +15,8 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Selects among results, of which the first is the nominal case; selects the nominal case if no case both has a
-    /// verdict and was shaken.
+    /// Selects among results, the first of which is that of the nominal case. If no case both has a verdict and was
+    /// shaken, selects the nominal case.
     pub(super) fn of(results: &[CaseResult]) -> Self {
         let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
         let number = |at: Option<&usize>| at.and_then(|at| u32::try_from(*at).ok()).unwrap_or(0);
@@ -45,9 +45,9 @@ fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
 
 /// Returns the number of the medoid: the run with the smallest sum of distances to all others.
 ///
-/// The distances are added over all planes, because a variant is one stack in all planes. Of
-/// several runs with the smallest sum, the first is chosen. The result is 0 if no allowed run has a
-/// verdict in all planes.
+/// The distances are added over all planes, because a variant number denotes the same stack in all
+/// planes. Of several runs with the smallest sum, the first is chosen. The result is 0 if no allowed
+/// run has a verdict in all planes.
 pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool) -> u32 {
     let sums: Vec<Vec<Option<f64>>> = planes.iter().map(|results| sums(results)).collect();
     let count = sums.iter().map(Vec::len).min().unwrap_or(0);

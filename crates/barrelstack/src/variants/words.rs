@@ -512,8 +512,8 @@ mod tests {
         for planes in [
             vec![(View::Transverse, &one)],
             vec![(View::Transverse, &one), (View::Longitudinal, &later)],
-            // A plane in which more variants fall, but few enough to stand, does not change the
-            // verdict.
+            // A plane in which more variants fall, but few enough for the verdict "Stands", does not
+            // change the verdict.
             vec![(View::Transverse, &one), (View::Longitudinal, &spread(64, 1))],
         ] {
             assert!(headline(&planes).starts_with(cut), "{}", headline(&planes));

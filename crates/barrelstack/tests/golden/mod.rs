@@ -48,7 +48,7 @@ const RUNS: [(&str, &str, &[&str]); 12] = [
     ),
 ];
 
-/// Number of cases in lanes: more than two bundles of the widest.
+/// Number of cases that run in SIMD lanes: more than two bundles of the widest kind.
 const IN_LANES: u32 = 20;
 
 /// The bits of a case and its work.
@@ -153,9 +153,9 @@ impl Table {
 pub(crate) enum Verdict {
     /// Equal.
     Kept,
-    /// Other bits under the same version.
+    /// The results differ, although the version is the same.
     Refused(String),
-    /// Another version, other work for the same bits, or other cases.
+    /// The version differs, the same results took other work, or the cases differ.
     Stale(String),
 }
 

@@ -9,7 +9,7 @@ pub(super) struct Catalog {
     templates: Vec<Template>,
     /// Indices of templates, by a word that occurs in every text that matches the template.
     by_word: HashMap<&'static str, Vec<usize>>,
-    /// Templates without such a word.
+    /// Indices of the templates for which no word occurs in every matching text.
     wordless: Vec<usize>,
 }
 
@@ -74,7 +74,7 @@ impl Catalog {
     }
 }
 
-/// Returns the entry of a line.
+/// Returns the English text and the translation in a line; `None` if the line is not an entry.
 pub(super) fn entry(line: &'static str) -> Option<(&'static str, &'static str)> {
     let (source, rest) = quoted(line.trim())?;
     let (target, rest) = quoted(rest.trim_start().strip_prefix('=')?.trim_start())?;
@@ -82,7 +82,7 @@ pub(super) fn entry(line: &'static str) -> Option<(&'static str, &'static str)> 
     (rest.is_empty() || rest.starts_with('#')).then_some((source, target))
 }
 
-/// Reads a TOML string at the start of a text, and returns it with what follows.
+/// Reads the TOML string with which a text starts, and returns it with the text that follows the string.
 fn quoted(text: &'static str) -> Option<(&'static str, &'static str)> {
     let inner = text.strip_prefix('"')?;
     let mut escaped = false;

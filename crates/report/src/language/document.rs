@@ -41,7 +41,7 @@ impl Document {
             let unknown = [word, meaning].into_iter().filter(|text| catalog.entry(text).is_none());
             missing.extend(unknown.map(|text| (*text).to_owned()));
         }
-        // In a heading, a capitalized word is not taken for a name, which would need no translation.
+        // A capitalized word in a heading counts as a word to be translated, not as a name.
         walk(&self.blocks, &mut |block| {
             let heads: Vec<&String> = match block {
                 Block::Heading { text, .. } => vec![text],

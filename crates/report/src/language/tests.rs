@@ -78,7 +78,7 @@ fn markup_is_translated_between_tags_and_in_labels() {
     assert_eq!(Language::Spanish.markup(kept), kept);
 }
 
-/// Placeholders of a template, and its numbers.
+/// Returns the placeholders and the numbers in a template.
 fn values(text: &str) -> Vec<String> {
     let mut found: Vec<String> = text
         .split(|c: char| !(c.is_ascii_digit() || "{}.".contains(c)))

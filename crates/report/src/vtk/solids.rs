@@ -58,8 +58,9 @@ pub struct Solids {
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, and lengths are in m, rounded
 /// as in [`paraview`](super::paraview).
 /// Surfaces are triangles, straps and ties are lines. Cells carry `body` (the index of the body or
-/// tie), `role` (as in [`paraview`](super::paraview)), `level` (0 for a tie) and `displacement` (m),
-/// that of the origin of the body from the first frame (0 for a tie); points carry `velocity` (m/s).
+/// tie), `role` (as in [`paraview`](super::paraview)), `level` (0 for a tie) and `displacement` (m):
+/// the displacement vector of the origin of the body since the first frame (0 for a tie). Points
+/// carry `velocity` (m/s).
 ///
 /// # Errors
 /// The first error of `put`.

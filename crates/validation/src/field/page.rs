@@ -300,7 +300,7 @@ fn direction(text: &mut String, cases: &[FieldCases]) {
                    two modes is a convention (see [space.md](space.md)).\n");
 }
 
-/// Returns the shares of a study for stacks of a number of levels.
+/// Returns the shares of a study for stacks with a given number of levels.
 fn share<'a>(results: &'a Results, study: &str, levels: usize) -> Option<&'a Share> {
     results.shares.iter().find(|one| one.study == study && one.levels == levels)
 }
@@ -390,7 +390,7 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     );
 }
 
-/// Returns the mean likelihood of a statement for barrel–rack friction in the bin whose lower edge is `from`.
+/// Returns the mean likelihood of a statement if the barrel–rack friction lies in the bin whose lower edge is `from`.
 fn likelihood(results: &Results, given: &str, from: f64) -> String {
     let is = |bin: &&Bin| bin.given == given && bin.unknown == 0 && bin.range[0] == from;
     results.bins.iter().find(is).map_or_else(String::new, |bin| format!("{:.2}", bin.likelihood))

@@ -38,7 +38,7 @@ pub struct Share {
     pub count: (u32, u32),
     /// 95 % interval of the share of the simulated cases that fall.
     pub design: Interval,
-    /// Mean fitted probability that the same cases fall.
+    /// Fitted probability of a fall, averaged over the simulated cases.
     pub fitted: f64,
     /// Probability of a fall with the medians of the catalog, under the unscaled record.
     pub medians: f64,
@@ -85,7 +85,8 @@ pub struct Results {
     pub posteriors: Vec<Posterior>,
     /// Likelihoods along each unknown.
     pub bins: Vec<Bin>,
-    /// Predicted value of each statement, over the prior and over the posterior given the statement "half".
+    /// For each statement, its name and its predicted value, over the prior and over the posterior given the statement
+    /// "half".
     pub predictions: Vec<(String, Range, Range)>,
     /// For each value of the barrel–rack friction: the share of barrels on the floor, as mean and central 90 % over all
     /// other unknowns.
@@ -186,7 +187,8 @@ impl Results {
         Ok(weighed)
     }
 
-    /// Computes the share of barrels on the floor and the densities, both as functions of the barrel–rack friction.
+    /// Computes, as functions of the barrel–rack friction, the share of barrels on the floor, and the prior and
+    /// posterior densities of this friction.
     fn along_friction(&mut self, draws: &[[f64; UNKNOWNS]], weighed: &Weighed) {
         let even = vec![1.0; draws.len()];
         for edges in bins(24).windows(2) {

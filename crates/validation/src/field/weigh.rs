@@ -162,7 +162,8 @@ pub(super) fn effective(weights: &[f64]) -> f64 {
     sum * sum / weights.iter().map(|w| w * w).sum::<f64>()
 }
 
-/// Returns the mean weight of the draws with an unknown within a range; `None` if there are too few such draws.
+/// Returns the mean weight of the draws in which an unknown lies within a range; `None` if there are too few of these
+/// draws.
 pub(super) fn within(
     draws: &[[f64; UNKNOWNS]],
     weights: &[f64],

@@ -63,7 +63,7 @@ fn first_fall() -> Problem {
         })
 }
 
-/// Creates the problem of scene A, read from a file that describes each body and the nodes of the racks.
+/// Creates the problem of the version *bodies*, read from a file that describes each body and the nodes of the racks.
 fn written() -> Problem {
     Problem {
         id: "consensus/a-file".into(),

@@ -146,7 +146,7 @@ fn hill() -> Problem {
     .quantity("smallest push that makes a barrel roll out", "g", relative(exact, 2e-2).fast(3e-2))
     .at_border(0.05, move |amplitude| {
         let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
-        // Beyond the chock it falls onto the beam.
+        // A barrel that passes the chock falls onto the beam.
         let drops = run.assembly.of_kind(PartKind::Barrel).map(|b| run.fates.fate(b).drop);
         Ok(drops.fold(0.0, f64::max) > 0.05)
     })
@@ -322,7 +322,7 @@ fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure>
         samples.push(state.poses[1].position.x);
         ControlFlow::Continue(())
     })?;
-    // |X(ω)| of the impulse m v, over the static value 1/k; both peaks lie near the frequency of the structure.
+    // |X(ω)| of the impulse m v, divided by the static value 1/k; both peaks lie near the frequency of the structure.
     let answer = |omega: f64| {
         let (mut re, mut im) = (0.0, 0.0);
         for (i, x) in samples.iter().enumerate() {

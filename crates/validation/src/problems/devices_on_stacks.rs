@@ -230,7 +230,7 @@ fn frequency(upper: usize) -> Problem {
         let run = with_mass(mass, tuning, (0.2, 0.05), 10.0)?;
         let (platform, other) =
             (displacement(&run, "platform of R1", "x")?, displacement(&run, "mass on R1", "x")?);
-        // A mode is isolated by projecting out the other one, orthogonal with respect to the masses.
+        // A mode is isolated by projecting out the other mode, which is orthogonal with respect to the masses.
         let shape = own / (own - square);
         let projected =
             |((t, x), (_, y)): (&(f64, f64), &(f64, f64))| (*t, ABOARD * x + mass * shape * y);

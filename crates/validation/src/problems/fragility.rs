@@ -87,7 +87,8 @@ fn covered(
         .by(move |effort| coverage(effort, band))
 }
 
-/// Creates the problem of the annual rate of failure for the hazard `λ(x) = k₀ x⁻ᵏ`, which is `k₀ θ⁻ᵏ exp(k²β²/2)`.
+/// Creates the problem of the annual rate of failure under the hazard `λ(x) = k₀ x⁻ᵏ`. For a fragility curve with the
+/// median θ and the dispersion β, the exact rate is `k₀ θ⁻ᵏ exp(k²β²/2)`.
 fn power_law() -> Problem {
     let (k0, k, ln_median) = (1e-4, 2.5, -0.7);
     let curve = Lognormal { median: exp(ln_median), dispersion: 0.45 };

@@ -158,7 +158,7 @@ fn rest() -> Problem {
 /// Returns `true` if a stack of `n` bricks with harmonic overhangs, multiplied by the fraction `share`, stands.
 fn stands(n: u32, share: f64) -> Result<bool, Failure> {
     let (length, height) = (1.0, 0.2);
-    // The lowest lies on a table that ends at x = 0; brick i from the top overhangs the one below by L/2i.
+    // The lowest brick lies on a table that ends at x = 0; brick i from the top overhangs the brick below by L/2i.
     let table = rectangle(4.0, 1.0);
     let mut ground = ground_of(vec![centered(Shape::Polygon(table.clone()))]);
     ground.pose = pose(-2.0, -0.5, 0.0);

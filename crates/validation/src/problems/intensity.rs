@@ -11,9 +11,11 @@ use crate::{Failure, Problem};
 const SOURCE: &str = "integrals of a harmonic";
 const STEP: &str = "oscillator pushed by a constant force";
 
-/// Amplitude (m/s²), period (s) and number of cycles of the harmonic motion.
+/// Amplitude (m/s²) of the harmonic motion.
 const AMPLITUDE: f64 = 0.3 * STANDARD_GRAVITY;
+/// Period (s) of the harmonic motion.
 const PERIOD: f64 = 0.5;
+/// Number of cycles of the harmonic motion.
 const CYCLES: u32 = 8;
 
 /// Damping ratio of the response spectra.

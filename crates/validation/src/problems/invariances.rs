@@ -86,8 +86,9 @@ fn invariance(
         })
 }
 
-/// Time step (s) and end time (s) of the runs of heaps.
+/// Time step (s) of the runs of heaps.
 const STEP: f64 = 2e-4;
+/// End time (s) of the runs of heaps.
 const END: f64 = 0.5;
 
 fn mirror(seed: u64) -> Result<f64, Failure> {

@@ -1,7 +1,8 @@
 //! Smooth motions, compared with independent equations of motion that a library solves.
 //!
-//! The equations are either those of rigid bodies, which the contact approaches as it becomes stiffer, or those of the
-//! contact springs and dampers themselves; from the latter the program differs only by the error of its time steps.
+//! In some problems the equations are those of rigid bodies, which the contact model approaches as the contact becomes
+//! stiffer. In the other problems they contain the contact springs and dampers; there, the program differs from the
+//! solution only by the error of its time steps.
 
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math::{acos, atan2, cos, sin};
@@ -139,7 +140,7 @@ fn springs() -> Problem {
     let (push, omega) = (1.5, 40.0);
     let (start, tilt) = (half_height - 0.8 * MASS * GRAVITY / (2.0 * stiffness), 1e-3);
     let inertia = MASS * (half_width * half_width + half_height * half_height) / 3.0;
-    // Position of a corner to the right of the center, and above it.
+    // Coordinates of a corner relative to the center: to the right, and upward.
     let corner = move |side: f64, angle: f64| {
         (
             side * half_width * cos(angle) + half_height * sin(angle),
@@ -182,8 +183,9 @@ fn springs() -> Problem {
     })
 }
 
-/// Radii (m) of the cradle and of the disc that lies in the cradle.
+/// Radius (m) of the cradle.
 const CRADLE: f64 = 0.6;
+/// Radius (m) of the disc that lies in the cradle.
 const DISC: f64 = 0.35;
 
 /// Creates a solid disc in a wide cradle, displaced by an angle (rad) from the bottom and at its static penetration.

@@ -10,8 +10,9 @@ use super::housner::{firm, slender};
 const CLOSED: &str = "Makris and Roussos 2000, Zhang and Makris 2001";
 const TABLE: &str = "Zhang and Makris 2001, event-driven integration";
 
-/// p (rad/s) and α (rad) of the tabulated block.
+/// Frequency parameter p (rad/s) of the tabulated block.
 const RATE: f64 = 2.14;
+/// Slenderness angle α (rad) of the tabulated block.
 const ALPHA: f64 = 0.25;
 
 /// Shape of a pulse.

@@ -120,11 +120,12 @@ fn wedged() -> f64 {
     FRICTION / cos(CRADLE.to_radians())
 }
 
-/// Returns the smallest push (g) that makes a barrel slide on two rails that raise its right end by an angle (rad). The
-/// barrel slides toward the right end or, with `side = -1`, away from it. The staves form an arc about a point C high
-/// above the barrel, so the barrel slides by rotating about C. The balance of forces is `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂
-/// t₂) + m (A, −g) = 0`, and the balance of moments about C is `m d × (A, −g) = μ (N₁ + N₂) R`; μ is the coefficient of
-/// [`wedged`].
+/// Returns the smallest push (g) that makes a barrel slide on two rails that raise its right end by an angle (rad).
+///
+/// The barrel slides toward the right end or, with `side = -1`, away from it. The staves form an arc about a point C
+/// high above the barrel, so the barrel slides by rotating about C. The balance of forces is
+/// `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂ t₂) + m (A, −g) = 0`, and the balance of moments about C is
+/// `m d × (A, −g) = μ (N₁ + N₂) R`; μ is the coefficient of [`wedged`].
 fn sliding(angle: f64, side: f64) -> f64 {
     let [length, head, bilge] = BARREL;
     let friction = wedged();

@@ -213,7 +213,7 @@ fn stays(zeta: f64) -> Problem {
     })
 }
 
-/// Creates the problem of the longest stable time step of symplectic Euler for a mass on the spring of its node.
+/// Creates the problem of the longest time step for which symplectic Euler is stable, for a mass on a contact spring.
 fn stability(zeta: f64) -> Problem {
     let exact = 2.0 * ((1.0 + zeta * zeta).sqrt() - zeta);
     setting(

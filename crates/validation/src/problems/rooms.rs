@@ -112,10 +112,11 @@ fn pounded() -> Result<RoomRun, Failure> {
     run(&room, 1)
 }
 
-/// Creates the problems of two equal blocks that strike each other across a gap, and of a wall.
+/// Creates the problems of two equal blocks, A and B, that strike each other across a gap, and of a wall.
 ///
-/// Equal masses exchange their velocities without loss, whatever the law: A stops, B goes to the wall and returns to A,
-/// which it sends back with its own speed. The wall gives twice the momentum of B.
+/// Since the masses are equal and the contacts are elastic, the blocks exchange their velocities. A moves to B and
+/// stops; B moves to the wall, returns to A and stops; A then moves back at the initial speed. The impulse of the wall
+/// on B is twice the momentum of B.
 fn pounding() -> Vec<Problem> {
     static RUN: OnceLock<Result<RoomRun, String>> = OnceLock::new();
     let [mass, speed, gap, spring] = BLOCK;

@@ -200,7 +200,7 @@ fn solve(factor: &[Vec<f64>], load: &mut [f64]) {
 }
 
 fn long() -> Problem {
-    // A tank of 2 m by 0.5 m, represented by half of a cylinder with that mean depth.
+    // A tank that is 2 m long and filled to 0.5 m, represented by a half-full cylinder with a mean depth of 0.5 m.
     let (length, depth) = (2.0, 0.5);
     let exact = std::f64::consts::PI / length * (std::f64::consts::PI * depth / length).tanh();
     setting(

@@ -16,9 +16,11 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
 const REBOUND: &str = "balance of energy of a spring k δ^1.5";
 
-/// Mass (kg) of a full barrel; the impact law of the barrel is the default law of the catalog.
+/// Mass (kg) of a full barrel.
 const MASS: f64 = 270.0;
+/// Stiffness (N/m^1.5) of the impact law of the barrel, the default in the catalog.
 const STIFFNESS: f64 = 1.2e9;
+/// Coefficient of restitution of the impact law of the barrel, the default in the catalog.
 const RESTITUTION: f64 = 0.3;
 
 /// Returns the problems of this module.

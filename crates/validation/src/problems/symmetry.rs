@@ -6,8 +6,9 @@ use crate::order::{Order, planar_heap, planar_pairs, spatial_heap, spatial_pairs
 use crate::problem::{Reference, absolute, setting};
 use crate::{Effort, Outcome, Problem};
 
-/// Time step (s) and end time (s).
+/// Time step (s).
 const STEP: f64 = 1e-4;
+/// End time (s).
 const END: f64 = 1.0;
 
 /// Returns the problems of this module.
@@ -24,7 +25,7 @@ pub(super) fn problems() -> Vec<Problem> {
         problem("two-on-a-floor", "two solids on a floor", limit(), |effort| {
             (0..if effort == Effort::Full { 15 } else { 4 }).map(spatial_heap).collect()
         }),
-        // A change of the last bit of the initial state moves the blocks by 1.4e-9 m as well.
+        // A change of the last bit of the initial state also moves the blocks by 1.4e-9 m.
         problem("blocks-on-a-floor", "two blocks on a floor", absolute(0.0, 1e-8), |_| {
             vec![spatial_heap(15)]
         }),

@@ -115,8 +115,8 @@ pub(super) struct Found {
     pub(super) complete: bool,
 }
 
-/// For each plane, whether each variant collapses, in the order of their numbers; `None` for a variant without a verdict,
-/// which counts against a change as well.
+/// For each plane, whether each variant collapses, in the order of their numbers. A variant without a verdict is `None`
+/// and also counts as a failure.
 pub type Verdicts = Vec<Vec<Option<bool>>>;
 
 /// Verdicts of a block of variants, or `Break` if the block was canceled.
@@ -210,7 +210,7 @@ mod tests {
         searches_covered: u32,
         chosen: u32,
         chosen_covered: u32,
-        /// Changes reported as sufficient though their true failure probability exceeds the limit.
+        /// Number of changes that are reported as sufficient although their true failure probability exceeds the limit.
         too_many_fall: u32,
     }
 

@@ -1,4 +1,4 @@
-//! Sentences on the range of the share over the uncertain constants of the seats.
+//! Sentences on the range of the share of collapses as the uncertain constants of the seats vary.
 
 use super::{Placed, percent};
 use crate::variants::{ShareAt, Spread};
@@ -10,7 +10,7 @@ const NARROW: f64 = 0.1;
 /// 95 % fractiles by at least this difference.
 const BEYOND: f64 = 0.1;
 
-/// Describes the range of the share over the uncertain constants, and the decisive constant, such as
+/// Describes the range of the share as the uncertain constants vary, and the decisive constant, such as
 /// "Depending on the friction, stiffness and damping of the seats, which are uncertain, 31 to 100 % of such stacks
 /// fall in the direction along the barrels; the stiffness of seats decides the outcome: …".
 pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {

@@ -70,8 +70,8 @@ fn shaped(length: f64, head: f64, bilge: f64, rounding: f64) -> Result<Barrel, F
     Barrel::new(length, head, bilge, rounding).map_err(absent)
 }
 
-/// Returns the mean rate (rad/s), from the start to a time (s), at which the axis of body 1 precesses about the
-/// vertical.
+/// Returns the mean rate (rad/s) at which the axis of body 1 precesses about the vertical, from the start to a time
+/// (s).
 fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Failure> {
     let (mut round, mut before) = (0.0, 0.0);
     scene.watch(&Still, step, end, |state, _, _| {
@@ -92,7 +92,7 @@ fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Fa
     Ok(round / end)
 }
 
-/// Creates the problem of a top in steady precession whose spherical tip rolls.
+/// Creates the problem of a top that precesses steadily while its spherical tip rolls.
 fn top(which: &'static str) -> Problem {
     let (quantity, unit, exact) = match which {
         "speed" => ("speed of the center of the top after 1 s", "m/s", 0.344_417_790),
@@ -225,9 +225,9 @@ fn rock(
 
 /// Height (m) of the axis of a barrel above the axes of the tubes that support it.
 const ABOVE_TUBES: f64 = 0.343_517_867_6;
-/// Angle (rad) between the vertical and the normal of a contact on these tubes.
+/// Angle (rad) between the vertical and the normal of a contact between the barrel and a tube that supports it.
 const CONTACT_ANGLE: f64 = 9.098_134_339 * PI / 180.0;
-/// Slope (rad) of the tubes.
+/// Slope (rad) of the tubes that support the barrel.
 const SLOPE: f64 = 5.0 * PI / 180.0;
 
 /// Creates a barrel at rest across two tubes that descend along `x`.

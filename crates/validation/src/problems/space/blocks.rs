@@ -119,7 +119,7 @@ fn first_impact(turned: f64) -> Result<Impact, Failure> {
     let edge = body.pose.orientation.matrix().apply(Vec3::new(half_width, 0.0, -half_height));
     body.pose.position = -edge - Vec3::new(0.0, 0.0, mass * G / (2.0 * stiffness));
     body.nodes = vec![points(&corners(half_width, 0.5, -half_height))];
-    // Damped like the plane block that reproduces Housner's ratio.
+    // Damped like the planar block that reproduces Housner's ratio.
     let damping = |ratio| restitution::damping(stiffness, ratio, 0.5 * mass);
     let law = NormalLaw::KelvinVoigt { stiffness, damping: damping(3.0) };
     let grip = coulomb(20.0, stiffness, damping(1.0));

@@ -19,11 +19,13 @@ use crate::{Failure, Problem, theory};
 
 /// Mass (kg) of the bodies.
 const MASS: f64 = 269.0;
-/// Moments of inertia (kg·m²) of the barrel about its axis and about a transverse axis.
+/// Moment of inertia (kg·m²) of the barrel about its axis.
 const ABOUT: f64 = 14.1;
+/// Moment of inertia (kg·m²) of the barrel about a transverse axis.
 const ACROSS: f64 = 22.6;
-/// Half the length (m) of the barrel, and the radius (m) of the flat part of its head.
+/// Half the length (m) of the barrel.
 const HALF: f64 = 0.4725;
+/// Radius (m) of the flat part of the head of the barrel.
 const HEAD: f64 = 0.269_982_558_045_203;
 /// Stiffness (N/m) that is low enough for measurable deformations.
 const SOFT: f64 = 1e6;

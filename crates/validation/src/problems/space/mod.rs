@@ -44,7 +44,8 @@ pub(super) fn problems() -> Vec<Problem> {
     theories.into_iter().flatten().collect()
 }
 
-/// Returns a normal law with a stiffness (N/m), and with enough damping for a mass (kg) to come to rest on the contact.
+/// Returns a normal contact law with a stiffness (N/m), and with enough damping for a mass (kg) to come to rest on the
+/// contact.
 fn firm(stiffness: f64, mass: f64) -> NormalLaw {
     NormalLaw::KelvinVoigt { stiffness, damping: restitution::damping(stiffness, 0.7, mass) }
 }

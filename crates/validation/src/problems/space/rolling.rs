@@ -72,7 +72,7 @@ fn incline(degrees: f64, friction: f64, acceleration: f64, spin: f64) -> [Proble
     ]
 }
 
-/// Radius (m) of the large ball that represents the floor where the rolling ball is the target.
+/// Radius (m) of the large ball that represents the floor if the rolling ball is the target of the contact pair.
 const EARTH: f64 = 1e5;
 
 /// Creates the ball on a slope, with the contact constants of the problems of [`carried`].
@@ -95,7 +95,7 @@ fn rolling(role: Role, friction: f64) -> Result<Scene<Spatial>, Failure> {
 }
 
 /// Creates the problems of a ball that rolls for a long way as contactor or as target. The tangential spring of the
-/// contact then moves over the floor or over the surface of the ball, and the forces must be equal.
+/// contact then moves over the floor or over the surface of the ball, and the forces must be the same for both roles.
 fn carried(role: Role, friction: f64) -> [Problem; 3] {
     let (name, place) = match role {
         Role::Contactor => ("contactor", 10.784_628),
