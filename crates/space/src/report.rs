@@ -226,10 +226,10 @@ fn variants(summary: &Summary) -> Option<Table> {
         row(
             "barrels fallen in a collapse",
             format!(
-                "{} of {}{}",
+                "{} of {} barrels fall{}",
                 range(fallen, 0),
                 spread.barrels,
-                spread.counted("the first loss")
+                spread.counted("the first loss of a seat")
             ),
         );
     }
