@@ -273,7 +273,7 @@ fn figure_7(results: &Results) -> Vec<Block> {
     if figures::racks_carry_the_nodes(full) {
         blocks.push(text(
             "All nodes belong to racks, as the paper states for the longitudinal case, where every contact \
-             body has targets above and below it. The model also has the pairs that meet only in a \
+             body touches target bodies above and below it. The model also has the pairs that meet only in a \
              collapse, such as barrel on barrel.",
         ));
     }
@@ -322,8 +322,8 @@ fn along(results: &Results) -> Vec<Block> {
         figures::contact_bodies(
             run,
             "along-pairs",
-            "The section along the barrels with the paper's body numbers; every contact body has targets \
-             above and below it.",
+            "The section along the barrels with the paper's body numbers; every contact body, which carries the nodes, \
+             touches target bodies above and below it.",
         ),
         figures::pairs(run, "Contact and target bodies along the barrels."),
     ]

@@ -632,14 +632,14 @@ class OutcomeFields(TypedDict, total=False):
     m.
     """
     overturning_angle: Quantity
-    """Inclination of the bottom rack above which the stack has overturned. Default: 30 deg."""
+    """The stack counts as overturned if its bottom rack is inclined by more than this angle. Default: 30 deg."""
     rack_slide_ratio: Union[float, Quantity]
     """Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left the
     barrels. Across the barrels, the reach ends where friction cannot hold the rack on the curved sides of the
     barrels; along the barrels, it ends where the rail of the rack passes the ends of the barrels. Default: 1.0.
     """
     rocking_angle: Quantity
-    """Inclination of a rack above which its level has rocked over. Default: 20 deg."""
+    """A level counts as rocked over if its rack is inclined by more than this angle. Default: 20 deg."""
     seat_loss_ratio: Union[float, Quantity]
     """Distance of the center of a barrel from its position in the rack, in barrel radii, beyond which the barrel
     has lost its seat. Default: 0.5.
