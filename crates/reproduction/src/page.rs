@@ -115,7 +115,7 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
         blocks.push(text(
             "Two mechanisms compete: the top level slides off alone, or level 3 slides off and carries the \
              top level along, as in the six barrels. Until the first fall, different bodies move in the two mechanisms, so no \
-             definition of the mode covers both. Which of them occurs depends on the rack, \
+             definition of the mode covers both. Which of the two mechanisms occurs depends on the rack, \
              which the paper's text does not describe:",
         ));
         blocks.push(racks::block(&results.racks));

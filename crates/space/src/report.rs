@@ -193,7 +193,7 @@ fn variants(summary: &Summary) -> Option<Table> {
              position at the end of the variant.",
             spread.counted("the first loss")
         ),
-        &[("", ""), ("in space", "")],
+        &[("", ""), ("in three dimensions", "")],
     );
     let mut row = |name: &str, value: String| {
         table.rows.push(vec![Cell::text(name), Cell::text(value)]);

@@ -307,7 +307,7 @@ refused_by_name!(
         .iter()
         .any(|magic| source.bytes.starts_with(magic))
     },
-    "unpack it and give the record inside; zip, tar and gzip are unpacked here"
+    "unpack it and give the record inside; zip, tar and gzip files can be given as they are"
 );
 refused_by_name!(
     WEB_PAGE,
