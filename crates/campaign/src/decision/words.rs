@@ -297,7 +297,7 @@ pub(super) fn warnings(
                 )
             };
             said.push(format!(
-                "{} of {} {} {} the stack standing at a higher level of shaking than one at which it falls (the \
+                "{} of {} {} {} the stack standing at one level of shaking although it falls at a lower level (the \
                  first: collapse at {}, standing at {}). {why}.",
                 returned.len(),
                 cases.curves(),

@@ -115,7 +115,8 @@ fn known(all: &Ranking, one: &Ranked) -> String {
     let (mean, high) = (one.collapse.mean, collapse(all, one.collapse.high));
     if mean <= 0.0 {
         return format!(
-            " Under {} motions it never collapses; the upper bound is {high} (95 % confidence).",
+            " Under {} motions it never collapses; the true frequency of collapse is at most {high} \
+             (95 % confidence).",
             one.motions
         );
     }
