@@ -188,8 +188,8 @@ pub fn collapse(
     }
     let posterior = posterior.ok_or_else(|| TableError::Unsuited {
         file: observations.file.clone(),
-        reason: "in every simulation within the range, the stack falls at rest or the run fails: start from other \
-                 values"
+        reason: "in every simulation within the range, the stack falls under its own weight or the run fails: \
+                 start from other values"
             .to_owned(),
     })?;
     let estimates = estimates(&lead.tunable, &posterior, reach);

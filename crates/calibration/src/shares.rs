@@ -119,8 +119,8 @@ pub fn shares(
     };
     let fit = Fit::new(&shaken, heights, settings.seed).ok_or_else(|| {
         unsuited(format!(
-            "only {} of {} simulations run to their end, fewer than {FEWEST_RUNS}: in all others, the stack falls at \
-             rest or the run fails: start from other values",
+            "only {} of {} simulations run to their end, fewer than {FEWEST_RUNS}: in all others, the stack falls \
+             under its own weight or the run fails: start from other values",
             shaken.len(),
             settings.simulations
         ))
@@ -147,7 +147,8 @@ pub fn shares(
     let left_out = settings.simulations - shaken.len();
     if left_out > 0 {
         warnings.push(format!(
-            "simulations without a result, because the stack falls at rest or the run fails: {left_out} of {}",
+            "simulations without a result, because the stack falls under its own weight or the run fails: {left_out} \
+             of {}",
             settings.simulations
         ));
     }

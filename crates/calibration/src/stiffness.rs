@@ -62,7 +62,7 @@ pub fn stiffness(
     let outside = force.iter().filter(|force| **force <= 0.0).count();
     if outside > 0 {
         warnings.push(format!(
-            "{outside} of {} rows have no force: remove the rows before the surfaces touch, since they \
+            "{outside} of {} rows have no force: remove the rows measured before the surfaces touch, since they \
              lower k",
             force.len()
         ));

@@ -235,7 +235,7 @@ fn headline(summary: &AftershockSummary) -> String {
         };
         match at {
             0 => format!("{some} survive an aftershock of {}", strength(summary, one.factor)),
-            _ => format!("{some} one of {}", one.factor),
+            _ => format!("{some} survive one of {}", one.factor),
         }
     };
     let clauses = listed(summary.aftershocks.iter().enumerate().map(clause));

@@ -516,7 +516,7 @@ fn doors(cellar: &Cellar, stacks: &[Standing], footprints: &[Convex], problems: 
             (0..stacks.len()).filter(|at| footprints[*at].apart(&shape) < -TOUCH).collect();
         if let Some(at) = hit.first() {
             let message = format!(
-                "stack {} stands in the door \"{}\", whose {ENTRY} m inside the room are to be free: move the door or \
+                "stack {} is too close to the door \"{}\": {ENTRY} m inside the room must be free; move the door or \
                  the block",
                 stacks[*at].name, door.name
             );

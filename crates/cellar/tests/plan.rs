@@ -71,7 +71,7 @@ fn stacks_in_wrong_places_are_errors_with_place_and_remedy() {
                 "door.door.position=1.2 m",
                 "block.1.first=[\"0.46 m\", \"0.1 m\"]",
             ],
-            &["stands in the door \"door\"", "move the door or the block"],
+            &["is too close to the door \"door\"", "move the door or the block"],
         ),
         (
             &["column=[{ name = \"post\", at = [\"1 m\", \"1 m\"] }]"],

@@ -102,7 +102,7 @@ fn a_wrong_cellar_is_one_error_at_its_place_and_nothing_is_written() {
         (
             "[[door]]\nname = \"d\"\nside = \"left\"\nposition = \"1 m\"\n",
             ":6:",
-            "stands in the door",
+            "is too close to the door",
         ),
         ("[room]\nlenght = \"5 m\"\n", ":4:", "did you mean `length`"),
     ] {

@@ -52,7 +52,7 @@ fn a_run_in_space_says_what_fell_and_whereto_and_leaves_its_files() {
 #[test]
 fn what_space_does_not_know_is_refused_before_any_work() {
     for (more, message) in [
-        (&["--with-engine=x", "--out=y"][..], "simulates scenarios in a plane, but not in space"),
+        (&["--with-engine=x", "--out=y"][..], "simulates planar scenarios, but not three"),
         (&["--set=stack.columns_along=3", "--set=stack.rack=four-barrel"], "stack.columns_along"),
     ] {
         let output = barrelstack([&SOLID[..], more].concat());
@@ -212,7 +212,7 @@ fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
     let place = folder.path().join("out").display().to_string();
     for (command, message) in [
         (&["run", "rolling-ball", "--variants=3"][..], "a free scene has no variants"),
-        (&["run", "rolling-ball", "--with-engine=x", "--out", &place], "but not in space"),
+        (&["run", "rolling-ball", "--with-engine=x", "--out", &place], "but not three-dimensional"),
     ] {
         let output = barrelstack(command);
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));

@@ -271,7 +271,8 @@ fn job_files_name_every_chunk() {
         let words = ["study", "emit", &file, "--engine", engine, "--out", "x", option, "3"];
         let output = barrelstack(words);
         assert_eq!(output.status.code(), Some(2));
-        assert!(stderr(&output).contains(&format!("{option} does not apply to this scheduler")));
+        let refusal = format!("{option} cannot be written into the files for this scheduler");
+        assert!(stderr(&output).contains(&refusal));
     }
 }
 

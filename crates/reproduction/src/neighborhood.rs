@@ -108,7 +108,7 @@ pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> V
 pub(super) fn block(kept: &[Kept]) -> Block {
     let mut table = Table::new(
         format!(
-            "The neighborhood of the reconstructed rack: {} racks, spread evenly. Lengths, angles and both coefficients of \
+            "Variations of the reconstructed rack: {} racks, spread evenly. Lengths, angles and both coefficients of \
              friction differ from those of the reconstructed rack by at most 5 %, k and c by at most 10 %.",
             kept.len()
         ),

@@ -27,7 +27,7 @@ pub(super) fn table() -> Table {
         |number: u32, columns: u32| Cell::text(format!("{number} = {}", name(number, columns)));
     Table::of(
         "The paper's body numbers and the names on this page: B level.column for barrels, R level for \
-         racks. The paper does not list the numbers; the rule follows from its text.",
+         racks. The paper does not list these numbers; the numbering was inferred from its text.",
         (1..=4).rev(),
         &[
             ("level", "", &|level: &u32| Cell::text(level.to_string())),

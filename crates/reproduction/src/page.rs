@@ -115,7 +115,7 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
         blocks.push(text(
             "Two mechanisms compete: the top level slides off alone, or level 3 slides off and carries the \
              top level along, as in the six barrels. Until the first fall, different bodies move in the two mechanisms, so no \
-             definition of the mode covers both. Which of them occurs depends on the rack, \
+             definition of the mode covers both. Which of the two mechanisms occurs depends on the rack, \
              which the paper's text does not describe:",
         ));
         blocks.push(racks::block(&results.racks));
@@ -273,7 +273,7 @@ fn figure_7(results: &Results) -> Vec<Block> {
     if figures::racks_carry_the_nodes(full) {
         blocks.push(text(
             "All nodes belong to racks, as the paper states for the longitudinal case, where every contact \
-             body has targets above and below it. The model also has the pairs that meet only in a \
+             body touches target bodies above and below it. The model also has the pairs that meet only in a \
              collapse, such as barrel on barrel.",
         ));
     }
@@ -322,8 +322,8 @@ fn along(results: &Results) -> Vec<Block> {
         figures::contact_bodies(
             run,
             "along-pairs",
-            "The section along the barrels with the paper's body numbers; every contact body has targets \
-             above and below it.",
+            "The section along the barrels with the paper's body numbers; every contact body, which carries the nodes, \
+             touches target bodies above and below it.",
         ),
         figures::pairs(run, "Contact and target bodies along the barrels."),
     ]

@@ -110,7 +110,7 @@ pub(super) fn block(found: &[Tried]) -> Block {
     let stress = |summary: &Summary| summary.demands.stress_amplification;
     let drift = |summary: &Summary| summary.demands.top_drift_ratio.map(|drift| 100.0 * drift);
     let table = Table::of(
-        "Other racks that agree with the paper's text, too. Robust: number of combinations of contact parameters, each \
+        "Other racks that also agree with the paper's text. Robust: number of combinations of contact parameters, each \
          changed by 10 %, in which the mode stays the same.",
         found,
         &[

@@ -68,9 +68,9 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
     let range = [low - 0.05 * span, high + 0.05 * span];
     let names = study.effects.iter().map(|effect| effect.name.clone()).collect();
     let caption = format!(
-        "Effects of single quantities, {}: change from the case as stated, one quantity changed at a time, \
-         the largest effect on the {} on top. The table below states the changes. Vertical lines mark the \
-         published values.",
+        "Effects of single quantities, {}: change from the case as stated when one quantity is changed; \
+         the quantity with the largest effect on the {} is on top. The table below states the changes. Vertical lines \
+         mark the published values.",
         subject.name(),
         subject.clock()
     );

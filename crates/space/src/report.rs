@@ -193,7 +193,7 @@ fn variants(summary: &Summary) -> Option<Table> {
              position at the end of the variant.",
             spread.counted("the first loss")
         ),
-        &[("", ""), ("in space", "")],
+        &[("", ""), ("in three dimensions", "")],
     );
     let mut row = |name: &str, value: String| {
         table.rows.push(vec![Cell::text(name), Cell::text(value)]);
@@ -226,10 +226,10 @@ fn variants(summary: &Summary) -> Option<Table> {
         row(
             "barrels fallen in a collapse",
             format!(
-                "{} of {}{}",
+                "{} of {} barrels fall{}",
                 range(fallen, 0),
                 spread.barrels,
-                spread.counted("the first loss")
+                spread.counted("the first loss of a seat")
             ),
         );
     }

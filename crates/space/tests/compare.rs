@@ -53,7 +53,7 @@ fn a_comparison_in_space_has_the_shares_of_separate_runs() {
     assert_eq!((paired[0].view, paired[0].pairs()), (Some("spatial"), 4));
     assert_eq!(paired[0].collapsed().as_slice(), fallen);
     let document = compare::document(&compared);
-    let said = format!("{} → 0 of 4 variants collapse", fallen[0]);
+    let said = format!("0 of 4 variants collapse, down from {}", fallen[0]);
     assert!(document.verdict.headline.contains(&said), "{}", document.verdict.headline);
     let Block::Players(players) = &document.blocks[0] else { panic!("players come first") };
     assert!(players.panes.iter().all(|pane| pane.scene.depth.is_some()));

@@ -107,7 +107,7 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
     };
     try {
       await Promise.all(candidates.filter(unknown).map(one));
-      if (own === going) find("devices-said").textContent = t("Each device was run in {1} variants; try one to run them all.", GLANCE);
+      if (own === going) find("devices-said").textContent = t("Each device was run in {1} variants only; try a device to run all variants with it.", GLANCE);
     } catch (error) {
       if (!error.stopped) refuse(error);
     }

@@ -153,7 +153,7 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
   // Returns the highest stack that stands, for each strength at which one does.
   function safest() {
     const stands = (velocity) => HEIGHTS.find((levels) => cells.filter((cell) => cell.velocity === velocity && cell.levels <= levels).every((cell) => cell.share <= STANDS && !cell.refused));
-    const parts = VELOCITIES.filter(stands).map((velocity) => t("{1} levels stand {2} cm/s", stands(velocity), velocity));
+    const parts = VELOCITIES.filter(stands).map((velocity) => t("{1} levels withstand {2} cm/s", stands(velocity), velocity));
     return parts.length > 0 ? `${parts.join(", ")}.` : t("None of these stacks stands even under the weakest of these motions.");
   }
 

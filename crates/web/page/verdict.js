@@ -19,7 +19,7 @@ function shareOf({ words, spread }, several) {
     line.append(drawn("rect", { class: "dot", x: Math.min(100 * share, 99.2), y: 0, width: 0.8, height: 14 }));
   }
   const sure = t("{1} to {2}", (100 * low).toFixed(0), `${(100 * high).toFixed(0)}\u00a0%`);
-  const said = share === null ? t("no verdict") : t("{1} of {2} fall; {3} sure: {4} do", collapsed, variants, "95\u00a0%", sure);
+  const said = share === null ? t("no verdict") : t("{1} of {2} fall; {3} interval: {4}", collapsed, variants, "95\u00a0%", sure);
   return make("div", { class: "share" }, make("span", {}, several ? words : t("share that falls")), line, make("span", { class: "soft" }, said));
 }
 

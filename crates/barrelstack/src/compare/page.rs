@@ -1,5 +1,7 @@
 //! Page of a comparison: verdict, synchronized players, tables and superimposed histories.
 
+use std::cmp::Ordering;
+
 use barrelstack_report::{
     Axis, Block, Document, Figure, History, Mark, Pane, Players, Plot, Series, SeriesStyle,
     Verdict, capital, listed, significant,
@@ -150,17 +152,23 @@ fn effect(sides: &[Side]) -> Option<String> {
     let cause = match (levels(first) == levels(second), straps(first), straps(second)) {
         (true, false, true) => "With straps".to_owned(),
         (true, true, false) => "Without straps".to_owned(),
-        _ => format!("With {} in place of {}", second.name, first.name),
+        _ => format!("With {} instead of {}", second.name, first.name),
     };
     let clause = |(at, pair): (usize, &Paired)| {
         let ([from, to], of) = (pair.collapsed(), pair.pairs());
         let place = place(first, pair);
-        let unproven = match (from == to, pair.is_clear()) {
-            (false, false) => ", too few to prove a difference",
-            _ => "",
+        let change = match to.cmp(&from) {
+            Ordering::Equal => "as before".to_owned(),
+            Ordering::Less => format!("down from {from}"),
+            Ordering::Greater => format!("up from {from}"),
+        };
+        let unproven = if from == to || pair.is_clear() {
+            ""
+        } else {
+            " (too few variants to prove a difference)"
         };
         let collapse = if at == 0 { " variants collapse" } else { "" };
-        format!("{from} → {to} of {of}{collapse}{place}{unproven}")
+        format!("{to} of {of}{collapse}{place}, {change}{unproven}")
     };
     // The other plane is named if any variant collapses in it.
     let named =

@@ -129,8 +129,9 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     });
     row("barrels fallen in a collapse", &|spread| {
         spread.barrels_fallen.map(|Range { p05, p95, least, most, .. }| {
-            let within = format!("{} of {}", span(p05, p95, 0), spread.barrels);
-            format!("{within} ({}){}", span(least, most, 0), spread.counted("the first loss"))
+            let fallen = format!("{} of {} barrels fall", span(p05, p95, 0), spread.barrels);
+            let counted = spread.counted("the first loss of a seat");
+            format!("{fallen}{counted} (all variants: {})", span(least, most, 0))
         })
     });
     row("collapses by mode", &|spread| {

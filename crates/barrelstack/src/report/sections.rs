@@ -357,8 +357,8 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
     }
     let table = interface_table(
         "Force on the upper body, or on the body named first if neither rests on the other; positive up and to the right. \
-         Two forces are given, each the one of largest magnitude over all steps: the first until the first loss of seat, the \
-         second over the whole run, falls included.",
+         Two forces are given: the one of largest magnitude until the first loss of seat, and the one of largest \
+         magnitude over the whole run, falls included.",
         &summary.interfaces,
     );
     let recording = &run.recording;

@@ -108,23 +108,24 @@ fn levels(from: u32, to: u32) -> String {
 fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
     let barrel = run.assembly.parts.iter().any(|p| p.name == first && p.kind == PartKind::Barrel);
     match mode {
-        CollapseMode::Ejection if barrel => {
-            format!("Barrel {first} is thrown out of its cradle, the first of {part} to go.")
-        }
+        CollapseMode::Ejection if barrel => format!(
+            "Barrel {first} is the first of {part} to lose its seat: it is thrown out of its cradle."
+        ),
         CollapseMode::Ejection => {
             format!("The barrels of {part} are thrown off the stack with their rack, {first}.")
         }
         CollapseMode::Rocking => format!(
-            "The part above, {part}, rocks on the barrels below and topples; rack {first} goes first."
+            "The upper part of the stack, {part}, rocks on the barrels below it and topples; rack {first} is the \
+             first to lose its seat."
         ),
         CollapseMode::RackSliding => format!(
             "Rack {first} slides along the barrels below until it leaves them, and takes {part} with \
              it."
         ),
         CollapseMode::Overturning => "The whole stack turns over about its foot.".to_owned(),
-        CollapseMode::Gravity => {
-            format!("It falls under its own weight, before it is shaken: {first} does not stand.")
-        }
+        CollapseMode::Gravity => format!(
+            "The stack falls under its own weight, before it is shaken: {first} does not stay in place."
+        ),
     }
 }
 
@@ -184,7 +185,7 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
         // A run that ends before its motion may miss the peaks of the motion.
         let whole = run.cut().map_or_else(String::new, |_| {
             format!(
-                " in its {:.1} s, of which the run covers {:.1} s",
+                "; of its {:.1} s, the run covers {:.1} s",
                 motion.duration, run.end_time
             )
         });
@@ -259,7 +260,7 @@ pub(super) fn details(
                 format!("the foot ends {:.1} cm from where it stood", 100.0 * slip)
             };
             let top = if drift < 1e-3 {
-                "The top hardly moves".to_owned()
+                "The top of the stack hardly moves".to_owned()
             } else {
                 format!("The top moves by up to {:.1} % of the height of the stack", 100.0 * drift)
             };

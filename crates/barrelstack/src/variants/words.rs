@@ -270,7 +270,7 @@ pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
         (true, false) => format!("differ from it {places}"),
         (false, true) => format!("differ from it {constants}"),
         (true, true) => format!("differ from it {places}, and {constants}"),
-        (false, false) => "draw no differences".to_owned(),
+        (false, false) => "do not differ from it".to_owned(),
     };
     sentences.push(format!("The stack as stated {stated}; the variants {differ}."));
     sentences

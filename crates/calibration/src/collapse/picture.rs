@@ -86,7 +86,7 @@ fn times(
     }
     let caption = "Observed times of the events. Bars show the simulated times: the central 90 % of the posterior \
                    weight of the simulations in which the event happens. A row has no bar if the event happens in \
-                   none of them.";
+                   none of these simulations.";
     rows.figure("collapse-times", caption, Axis::new("time", "s"), Some(observed))
 }
 

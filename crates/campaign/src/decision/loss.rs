@@ -59,9 +59,8 @@ impl Losses {
         }
         if cases.hunted {
             return Err(
-                "the levels were chosen by searches for collapse, so that a mean over the cases belongs to no level \
-                 of \
-                        shaking"
+                "the levels were chosen by searches for collapse, so that a mean over the cases does not \
+                 describe any single level of shaking"
                     .to_owned(),
             );
         }

@@ -143,8 +143,8 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
     let mut said = Vec::new();
     if !cases.hunted && !cases.shares_levels(cases.main) {
         said.push(format!(
-            "The cases do not share levels, so they are counted in {} bins of about {} neighboring cases; the \
-             intensity of a bin is the geometric mean over its cases. The curve is fitted to the individual cases.",
+            "The cases were not run at common levels, so they are counted in {} bins of about {} neighboring cases; \
+             the intensity of a bin is the geometric mean over its cases. The curve is fitted to the individual cases.",
             curve.stripes.len(),
             cases.all.len() / curve.stripes.len().max(1)
         ));

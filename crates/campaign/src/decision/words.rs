@@ -285,19 +285,19 @@ pub(super) fn warnings(
         let returned = &collapse.returned;
         if let Some(first) = returned.first() {
             let why = if cases.endings.cut > 0 {
-                "Motions were cut short, which alone can cause this".to_owned()
+                "Some motions were cut short, which alone can cause such results".to_owned()
             } else if cases.drawn.is_empty() {
-                "This is typical of rocking and sliding stacks; a single run proves little"
+                "Such results are typical of rocking and sliding stacks; a single run proves little"
                     .to_owned()
             } else {
                 format!(
-                    "This is typical of rocking and sliding stacks, and {} is drawn for each case; a single run proves \
-                     little",
+                    "Such results are typical of rocking and sliding stacks, and {} is drawn for each case; a single \
+                     run proves little",
                     cases.drawn.join(", ")
                 )
             };
             said.push(format!(
-                "{} of {} {} {} the stack standing at a higher level of shaking than one at which it falls (the \
+                "{} of {} {} {} the stack standing at one level of shaking although it falls at a lower level (the \
                  first: collapse at {}, standing at {}). {why}.",
                 returned.len(),
                 cases.curves(),

@@ -615,7 +615,7 @@ fn rests_on(all: &Heights) -> Vec<String> {
             "All barrels are full and of the type `{}` of the catalog. Friction, stiffness and damping of the seats \
              are drawn for every run around the values of the catalog, with the default dispersions of a scenario. \
              Values and dispersions are assumptions; they are different for wet floors and painted racks. Measure \
-             your own.",
+             those of your own floor and racks.",
             all.request.barrel
         ),
         format!(

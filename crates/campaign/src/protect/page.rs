@@ -98,7 +98,8 @@ fn headline(all: &Ranking) -> String {
     let shaken = |one: &Ranked| format!(", shaken {}", one.direction.words());
     let other = if best.direction == base.direction { String::new() } else { shaken(base) };
     format!(
-        "The best protection for its cost: {}. With it, {} loses {} barrels on average {}{}; as it is, {}{other}.{}",
+        "The best protection for its cost: {}. With this protection, {} loses {} barrels on average {}{}; \
+         without it, {}{other}.{}",
         best.protection.name,
         stack(all),
         significant(best.fallen.mean, 2),
@@ -114,7 +115,8 @@ fn known(all: &Ranking, one: &Ranked) -> String {
     let (mean, high) = (one.collapse.mean, collapse(all, one.collapse.high));
     if mean <= 0.0 {
         return format!(
-            " Under {} motions it never collapses; the upper bound is {high} (95 % confidence).",
+            " Under {} motions it never collapses; the true frequency of collapse is at most {high} \
+             (95 % confidence).",
             one.motions
         );
     }
@@ -401,7 +403,8 @@ fn rests_on(all: &Ranking) -> Vec<String> {
             }
         ),
         "Between two levels of shaking the loss is interpolated linearly in the logarithm of the velocity. Below \
-         the lowest level it decreases to zero at half of that level; above the highest level it remains constant."
+         the lowest level, the loss decreases to zero at half of that level; above the highest level it remains \
+         constant."
             .into(),
     ]
 }
@@ -412,7 +415,7 @@ fn warnings(all: &Ranking) -> Vec<String> {
     let fallen = (fallen > 0).then(|| {
         let said = fallen_at_rest(fallen, all.runs, "runs of all protections");
         format!(
-            "{said}They count as collapsed, with the level that fails and all above it on the floor."
+            "{said}Such runs count as collapsed, with the level that fails and all above it on the floor."
         )
     });
     left_out(lost, all.runs).into_iter().chain(fallen).collect()

@@ -134,14 +134,14 @@ fn headline(sheet: &Sheet) -> String {
     let direction = weakest.direction.words();
     match weakest.capacity {
         Capacity::Fitted(..) | Capacity::Between(..) => format!(
-            "RockScore {score}: shaken {direction} to {score} cm/s, nine in ten {stacks} stand."
+            "RockScore {score}: shaken {direction} at up to {score} cm/s, nine in ten {stacks} stand."
         ),
         Capacity::Above(_) => format!(
             "RockScore of at least {score}: under the strongest shaking of the protocol nine in ten {stacks} stand."
         ),
         Capacity::Below(lowest) => format!(
-            "RockScore 0: more than one in ten {stacks} collapse when shaken {direction} to {} cm/s, the weakest \
-             shaking of the protocol.",
+            "RockScore 0: more than one in ten {stacks} collapse when shaken {direction} at {} cm/s, the \
+             weakest shaking of the protocol.",
             shown(lowest)
         ),
     }

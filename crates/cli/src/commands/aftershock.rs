@@ -69,8 +69,8 @@ pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
     let cellar = match super::load_any(&scenario)? {
         Loaded::Cellar(cellar) => *cellar,
         Loaded::Scenario(_) => bail!(
-            "{}: this is the scenario of one stack; write a cellar that extends it, with kind = \"cellar\", [room] and one [[block]], \
-             and give that",
+            "{}: this is the scenario of one stack; write a cellar file that extends it, with kind = \"cellar\", \
+             [room] and one [[block]], and give that file",
             args.scenario
         ),
     };

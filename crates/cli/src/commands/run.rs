@@ -41,7 +41,8 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     if scenario.is_spatial() && args.with_engine.is_some() {
         bail!(
-            "--with-engine: the program in that page simulates scenarios in a plane, but not in space: leave it out{}",
+            "--with-engine: the program in that page simulates planar scenarios, but not three-dimensional ones: \
+             leave it out{}",
             if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
         );
     }

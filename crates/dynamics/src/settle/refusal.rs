@@ -80,7 +80,7 @@ pub enum Lack {
     },
     /// The body turns over on its support.
     #[error(
-        "it tips or rolls over on \"{on}\", which does not keep it and the bodies on it upright"
+        "it tips or rolls over: its support \"{on}\" does not keep it upright under its load"
     )]
     Balance {
         /// Name of the supporting body.

@@ -236,14 +236,14 @@ refused_by_name!(
     "matlab",
     "MATLAB",
     |source| source.bytes.starts_with(b"MATLAB "),
-    "write time and acceleration from MATLAB to a CSV file with writematrix and give that"
+    "write time and acceleration from MATLAB to a CSV file with writematrix and give that file"
 );
 refused_by_name!(
     TDMS,
     "tdms",
     "TDMS (National Instruments)",
     |source| source.bytes.starts_with(b"TDSm"),
-    "export time and acceleration to a CSV file and give that"
+    "export time and acceleration to a CSV file and give that file"
 );
 refused_by_name!(
     NUMPY,
@@ -264,7 +264,7 @@ refused_by_name!(
     "netcdf",
     "NetCDF",
     |source| source.bytes.starts_with(b"CDF\x01") || source.bytes.starts_with(b"CDF\x02"),
-    "write time and acceleration to a CSV file and give that"
+    "write time and acceleration to a CSV file and give that file"
 );
 refused_by_name!(
     OFFICE,
@@ -307,7 +307,7 @@ refused_by_name!(
         .iter()
         .any(|magic| source.bytes.starts_with(magic))
     },
-    "unpack it and give the record inside; zip, tar and gzip are unpacked here"
+    "unpack it and give the record inside; zip, tar and gzip files can be given as they are"
 );
 refused_by_name!(
     WEB_PAGE,

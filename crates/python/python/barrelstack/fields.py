@@ -583,8 +583,8 @@ class MotionFields(TypedDict, total=False):
     sensitivity: Union[float, Quantity]
     """Counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
     sequence: list["ShockFields"]
-    """Shocks of a cellar, one after the other, in place of all other fields of `[motion]`: each shock has these
-    fields itself, and starts with the bodies at rest where the previous shock left them.
+    """Successive shocks of a cellar, instead of all other fields of `[motion]`: each shock is described by the
+    same fields, and starts with the bodies at rest where the previous shock left them.
     """
     similitude: Union[float, Quantity]
     """Length scale of Froude similitude applied to the motion alone. Default: 1.0."""
@@ -617,8 +617,8 @@ class NodesFields(TypedDict, total=False):
     list: list["NodeFields"]
     """Nodes at chosen points."""
     rule: Literal["corners", "rolling", "exact"]
-    """Nodes at the corners, one node at the deepest point of a circle, or exact contact. In exact contact, which
-    both bodies must have as their rule, convex outlines touch each other at their deepest points.
+    """Nodes at the corners, one node at the deepest point of a circle, or exact contact. With exact contact, which
+    must be chosen for both bodies, convex outlines touch each other at their deepest points.
     """
     spacing: Quantity
     """Largest distance between nodes along the boundary."""
@@ -632,14 +632,14 @@ class OutcomeFields(TypedDict, total=False):
     m.
     """
     overturning_angle: Quantity
-    """Inclination of the bottom rack above which the stack has overturned. Default: 30 deg."""
+    """The stack counts as overturned if its bottom rack is inclined by more than this angle. Default: 30 deg."""
     rack_slide_ratio: Union[float, Quantity]
     """Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left the
     barrels. Across the barrels, the reach ends where friction cannot hold the rack on the curved sides of the
     barrels; along the barrels, it ends where the rail of the rack passes the ends of the barrels. Default: 1.0.
     """
     rocking_angle: Quantity
-    """Inclination of a rack above which its level has rocked over. Default: 20 deg."""
+    """A level counts as rocked over if its rack is inclined by more than this angle. Default: 20 deg."""
     seat_loss_ratio: Union[float, Quantity]
     """Distance of the center of a barrel from its position in the rack, in barrel radii, beyond which the barrel
     has lost its seat. Default: 0.5.
@@ -1206,8 +1206,9 @@ class UnknownsFields(TypedDict, total=False):
     0.35, nine in ten variants have a μ within a factor of 1.8 of the stated value. Default: 0.35.
     """
     friction_barrel_rack: Union[float, Quantity]
-    """Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured. It is then
-    the scatter of ln μ from one pair of barrel and rack to another. Default: `friction`.
+    """Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured. After a
+    measurement, only the scatter of ln μ from one pair of barrel and rack to another remains. Default:
+    `friction`.
     """
     friction_correlation: Union[float, Quantity]
     """Correlation of ln μ between any two pairs of materials. The default is an assumption, since nobody has

@@ -200,8 +200,8 @@ const OF_SHOCK: usize = SHOCK.fields.len();
 
 /// The fields of a shock, followed by the field `sequence`.
 static FIELDS: [Field; OF_SHOCK + 1] = {
-    let help = "Shocks of a cellar, one after the other, in place of all other fields of `[motion]`: each shock has \
-                these fields itself, and starts with the bodies at rest where the previous shock left them.";
+    let help = "Successive shocks of a cellar, instead of all other fields of `[motion]`: each shock is described by \
+                the same fields, and starts with the bodies at rest where the previous shock left them.";
     let sequence = Field::new("sequence", Kind::Tables(&SHOCK), Default::Nothing, help);
     let mut all = [sequence; OF_SHOCK + 1];
     let mut at = 0;

@@ -145,10 +145,10 @@ section! {
     /// barrels. Across the barrels, the reach ends where friction cannot hold the rack on the curved sides of the
     /// barrels; along the barrels, it ends where the rail of the rack passes the ends of the barrels.
     rack_slide_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("1.0");
-    /// Inclination of a rack above which its level has rocked over.
+    /// A level counts as rocked over if its rack is inclined by more than this angle.
     rocking_angle: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)), Default::Value("\"20 deg\"");
-    /// Inclination of the bottom rack above which the stack has overturned.
+    /// The stack counts as overturned if its bottom rack is inclined by more than this angle.
     overturning_angle: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)), Default::Value("\"30 deg\"");
 }

@@ -92,7 +92,8 @@ pub(super) fn emit(args: &EmitArgs) -> anyhow::Result<()> {
     ] {
         if given && !known {
             bail!(
-                "--{option} does not apply to this scheduler; leave it out, and set it when the scheduler is started"
+                "--{option} cannot be written into the files for this scheduler; leave it out, and set this limit in \
+                 the command that starts the jobs"
             );
         }
     }

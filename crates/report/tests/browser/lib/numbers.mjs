@@ -142,10 +142,11 @@ export async function ofComparison(page, { paired }) {
   const { headline } = await contents(page), reading = new Reading();
   demand(paired.length > 0, "no run is paired");
   for (const { both, only_first: first, only_second: second, neither, view } of paired) {
-    const counts = [both + first, both + second, both + first + second + neither];
+    const [from, to, all] = [both + first, both + second, both + first + second + neither];
+    const counts = from === to ? [to, all] : [to, all, from];
     const clause = headline.split("; ").find((text) => paired.length === 1 || text.includes(PLACES[view]));
     // A plane in which nothing collapses is not named.
-    if (clause || counts[0] + counts[1] > 0) reading.are(`headline, ${view}`, clause ?? "", counts);
+    if (clause || from + to > 0) reading.are(`headline, ${view}`, clause ?? "", counts);
   }
   return reading.close();
 }
