@@ -184,10 +184,7 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     let strength = |motion: &MotionSummary| {
         // A run that ends before its motion may miss the peaks of the motion.
         let whole = run.cut().map_or_else(String::new, |_| {
-            format!(
-                "; of its {:.1} s, the run covers {:.1} s",
-                motion.duration, run.end_time
-            )
+            format!("; of its {:.1} s, the run covers {:.1} s", motion.duration, run.end_time)
         });
         format!(
             "{place} ground motion that is shown reaches {:.2} g and {:.0} cm/s{whole}.",

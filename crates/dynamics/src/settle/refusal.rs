@@ -79,9 +79,7 @@ pub enum Lack {
         interface: String,
     },
     /// The body turns over on its support.
-    #[error(
-        "it tips or rolls over: its support \"{on}\" does not keep it upright under its load"
-    )]
+    #[error("it tips or rolls over: its support \"{on}\" does not keep it upright under its load")]
     Balance {
         /// Name of the supporting body.
         on: String,
