@@ -52,7 +52,7 @@ fn rack_source(name: &str) -> String {
     catalog::rack(name).map_or_else(String::new, |rack| format!("{name}: {}", rack.source))
 }
 
-/// Returns the perceived shaking at a peak ground velocity (m/s), in the terms of ShakeMap, such as "severe (VIII)".
+/// Returns the perceived shaking at a peak ground velocity (m/s), in the terms of `ShakeMap`, such as "severe (VIII)".
 ///
 /// The classes are averages over earthquakes in California (Wald et al. 1999). For other regions they are an
 /// assumption.
