@@ -49,7 +49,7 @@ fn an_island_of_collapse_is_reported_with_its_levels_and_not_smoothed_away() {
         "{warning}"
     );
     assert!(found.document.verdict.headline.contains("raw fractions"));
-    assert!(found.warnings.iter().any(|w| w.contains("standing at a higher level")));
+    assert!(found.warnings.iter().any(|w| w.contains("falls at a lower level")));
     assert_eq!(found.curves[0].returned.len(), 11);
 }
 
