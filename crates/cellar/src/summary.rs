@@ -199,7 +199,7 @@ described! {
         pub entered: Count,
         /// Distribution of the time of the first barrel in the aisle.
         pub first_barrel: Option<Range> as "s",
-        /// Variants in which no path 0.6 m wide leads through the aisle at the end.
+        /// Variants in which, at the end of the run, no path 0.6 m wide leads through the aisle.
         pub blocked: Count,
         /// Distribution of the time from which the aisle stays blocked.
         pub blocked_at: Option<Range> as "s",

@@ -35,7 +35,9 @@ impl TableArgs {
         let given = [(self.xlsx, "--xlsx"), (self.decimal_comma, "--decimal-comma")];
         match given.into_iter().find(|(given, _)| *given && !folder) {
             Some((_, option)) => {
-                bail!("{option}: no tables are written; give a folder for them, or leave it out")
+                bail!(
+                    "{option} applies only to tables, and none are written: give a folder for them, or omit {option}"
+                )
             }
             None => Ok(()),
         }

@@ -180,7 +180,8 @@ impl FloorPlan {
         }
     }
 
-    /// Returns the entries of the legend, each with its classes and its words, in lines of a width (px).
+    /// Returns the entries of the legend, each with its CSS classes and its text, wrapped into lines of at most `width`
+    /// (px).
     fn legend(&self, width: f64, language: Language) -> Vec<Vec<(Vec<&'static str>, String)>> {
         let present = |kind: &&RegionKind| self.regions.iter().any(|region| region.kind == **kind);
         let mut entries: Vec<_> = RegionKind::ALL

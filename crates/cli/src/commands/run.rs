@@ -124,7 +124,7 @@ pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Re
     };
     match args.variant {
         Some(number) if number > count => bail!(
-            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the stack as stated; --variants {number} adds variants"
+            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the stack as stated; --variants {number} runs so many"
         ),
         Some(number) => Ok(RunChoice::Number(number)),
         None => Ok(RunChoice::Typical),

@@ -110,7 +110,7 @@ pub enum Solid<R = f64> {
     HalfSpace,
     /// A ball.
     Ball(Ball<R>),
-    /// A tube with round ends.
+    /// A cylinder with hemispherical ends.
     Capsule(Capsule<R>),
     /// A barrel.
     Barrel(Barrel<R>),

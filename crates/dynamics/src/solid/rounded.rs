@@ -158,11 +158,12 @@ fn on_plane<R: Real>(center: Vec3<R>, radius: R) -> Touch<Spatial<R>> {
     midway(center - up * radius, Gap { distance: center.z - radius, normal: up })
 }
 
-/// Returns the patch of a barrel on the half-space: its deepest point, and the middle of its lower head.
+/// Returns the contact patch of a standing barrel on the half-space, given by the deepest point of the barrel and the
+/// center of its lower head.
 ///
-/// The energy and the force of a standing barrel are those of four points of its rim, a quarter turn apart; one of
-/// these is the deepest point. Energy and force are smooth functions of height and tilt, although an exactly upright
-/// barrel has no unique deepest point.
+/// Energy and force are computed at four points of the rim, a quarter turn apart, one of which is the deepest point.
+/// They are therefore smooth functions of height and tilt, although an exactly upright barrel has no unique deepest
+/// point.
 #[inline(always)]
 fn standing<R: Real>(
     barrel: &Barrel<R>,

@@ -171,7 +171,7 @@ impl Input {
             let (channel, number) = text.split_once('=').unwrap_or(("", text));
             let value = number.trim().parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
             let sensitivity = value.ok_or_else(|| {
-                anyhow!("--sensitivity {text}: expected a number above 0, or HNE=427819")
+                anyhow!("--sensitivity {text}: expected a number above 0, or a channel with its number, such as HNE=427819")
             })?;
             if channel.is_empty() {
                 options.sensitivity = Some(sensitivity);
