@@ -148,8 +148,8 @@ fn priors_of_constants(unknowns: usize) -> impl Iterator<Item = Prior> {
 }
 
 /// Draws samples of the coefficients of a probit regression from their posterior distribution. Coefficients with the
-/// prior distribution [`Prior::Group`] are not part of a sample; the last value of the sample is instead their common
-/// standard deviation.
+/// prior distribution [`Prior::Group`] are not part of a sample; if there are any, the last value of the sample is
+/// their common standard deviation.
 fn posterior(
     rows: &[Vec<f64>],
     failed: &[bool],

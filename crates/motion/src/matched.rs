@@ -23,7 +23,7 @@ pub struct Matched {
     /// The motion. The horizontal component is matched; the vertical component is only multiplied by
     /// the factor that scales the horizontal component to the target on average.
     pub motion: GroundMotion,
-    /// Largest relative misfit between the shortest and the longest matched period, on a grid of
+    /// Largest relative misfit at any period from the shortest to the longest matched period, on a grid of
     /// 1080 periods per decade.
     pub misfit: f64,
     /// Ranges of periods with a misfit beyond the tolerance; empty if the tolerance is met.

@@ -35,7 +35,7 @@ pub struct Flatfile {
 }
 
 /// Names of the column of record sequence numbers, in the published table and in its abridged forms.
-/// Each of the following constants holds the names of another column.
+/// Each of the following constants without a comment of its own holds the names of another column.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
 const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
 const STATION: &[&str] = &["station name", "station", "station_code"];

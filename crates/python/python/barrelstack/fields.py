@@ -279,7 +279,7 @@ class ElementFields(TypedDict, total=False):
     disengages.
     """
     stop_damping: Quantity
-    """Damping of the stops, which acts in compression only. Default: 0 N s/m."""
+    """Damping of the stops, which acts on approach only. Default: 0 N s/m."""
     stop_stiffness: Quantity
     """Stiffness of the stops. Default: 0 N/m."""
 
@@ -533,7 +533,7 @@ class IsolatorFields(TypedDict, total=False):
     recentring: Quantity
     """Stiffness of the springs that pull the platform back to its initial position. Default: 0 N/m."""
     stop_damping: Quantity
-    """Damping of a stop, which acts in compression only. The default is an assumption. Default: 5 kN s/m."""
+    """Damping of a stop, which acts on approach only. The default is an assumption. Default: 5 kN s/m."""
     stop_stiffness: Quantity
     """Stiffness of a stop: an assumption. Default: 500 kN/m."""
     stroke: Quantity
@@ -546,8 +546,8 @@ class LidFields(TypedDict, total=False):
     """
 
     damping: Quantity
-    """Damping of one lid (force per speed), which acts in compression only. The default is an assumption. Default:
-    2 kN s/m.
+    """Damping of one lid (force per speed), which acts on approach only. The default is an assumption. Default: 2
+    kN s/m.
     """
     gap: Quantity
     """Rise of a barrel from its position at rest before it touches its lid: an assumption. Default: 1 cm."""
@@ -617,8 +617,8 @@ class NodesFields(TypedDict, total=False):
     list: list["NodeFields"]
     """Nodes at chosen points."""
     rule: Literal["corners", "rolling", "exact"]
-    """Nodes at the corners, one node at the deepest point of a circle, or exact contact. With exact contact, which
-    must be chosen for both bodies, convex outlines touch each other at their deepest points.
+    """Nodes at the corners, one node at the deepest point of a circle, or exact contact. If both bodies have exact
+    contact, their convex outlines touch each other at their deepest points.
     """
     spacing: Quantity
     """Largest distance between nodes along the boundary."""
@@ -1272,7 +1272,7 @@ class WalkingStopFields(TypedDict, total=False):
     """Stops between racks and the barrels below: lips that a rack touches after it has walked through a gap."""
 
     damping: Quantity
-    """Damping of the lips at one barrel (force per speed), which acts in compression only. The default is an
+    """Damping of the lips at one barrel (force per speed), which acts on approach only. The default is an
     assumption. Default: 2 kN s/m.
     """
     gap: Quantity

@@ -86,7 +86,7 @@ section! {
     /// Stiffness of a stop: an assumption.
     stop_stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
-    /// Damping of a stop, which acts in compression only. The default is an assumption.
+    /// Damping of a stop, which acts on approach only. The default is an assumption.
     stop_damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"5 kN s/m\"");
     /// Stiffness of the springs that pull the platform back to its initial position.
@@ -123,7 +123,7 @@ const STEEPEST: f64 = 0.5;
 /// Half of the angle (rad) that a dish spans. A dish extends beyond its stops.
 const DISH: f64 = 1.2;
 
-/// Damping of bearings divided by their stiffness (s): an assumption. The damping acts in compression only.
+/// Damping of bearings divided by their stiffness (s): an assumption. The damping acts on approach only.
 const BEARING_DAMPING: f64 = 5e-4;
 
 impl Isolators {

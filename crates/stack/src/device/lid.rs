@@ -46,7 +46,7 @@ section! {
     /// Stiffness of one lid (force per displacement): an assumption.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
-    /// Damping of one lid (force per speed), which acts in compression only. The default is an assumption.
+    /// Damping of one lid (force per speed), which acts on approach only. The default is an assumption.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"2 kN s/m\"");
     /// Force above which a lid breaks permanently; if not given, lids never break.

@@ -75,7 +75,7 @@ section! {
     /// Stiffness of the lips at one barrel (force per displacement): an assumption for bent steel plate.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"1 MN/m\"");
-    /// Damping of the lips at one barrel (force per speed), which acts in compression only. The default is an
+    /// Damping of the lips at one barrel (force per speed), which acts on approach only. The default is an
     /// assumption.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"2 kN s/m\"");

@@ -69,7 +69,7 @@ choices! {
             Kind::Quantity(&[Dimension::LENGTH], Range::NOT_NEGATIVE), Default::Nothing;
         /// Stiffness of the stops.
         stop_stiffness: f64 = STIFFNESS, Default::Value("\"0 N/m\"");
-        /// Damping of the stops, which acts in compression only.
+        /// Damping of the stops, which acts on approach only.
         stop_damping: f64 = DAMPING, Default::Value("\"0 N s/m\"");
         /// Force above which the guide breaks permanently; if not given, the guide never breaks.
         strength: Option<f64> = FORCE, Default::Nothing;

@@ -55,8 +55,8 @@ const MOST_NODES: f64 = 20_000.0;
 table! {
     /// Contact nodes of a boundary, given by one of the fields.
     pub static NODES = "nodes";
-    /// Nodes at the corners, one node at the deepest point of a circle, or exact contact. With exact contact,
-    /// which must be chosen for both bodies, convex outlines touch each other at their deepest points.
+    /// Nodes at the corners, one node at the deepest point of a circle, or exact contact. If both bodies
+    /// have exact contact, their convex outlines touch each other at their deepest points.
     rule = Kind::Choice(names::<NodeRule>), Default::Nothing;
     /// Largest distance between nodes along the boundary.
     spacing = Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e3 }),

@@ -224,8 +224,8 @@ impl Joints {
 }
 
 impl Joints {
-    /// Returns the largest vertical force (N) between a barrel and any rack in a span of the run; `None` if no barrel
-    /// is joined to a rack.
+    /// Returns the largest vertical force (N) between a barrel and any rack in a span of the run; `None` if the
+    /// barrel has no joint with a rack.
     pub fn stave_load(
         &self,
         barrel: BodyId,

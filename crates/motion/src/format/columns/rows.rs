@@ -201,7 +201,8 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
 
 /// Interprets rows of several values without times. If the header names the columns, each is a channel.
 /// Otherwise, the rows must be parts of one series, as indicated by the stated number of samples or by
-/// the values themselves; the series is read row by row.
+/// the values themselves; the series is read row by row, with a warning unless the stated number of
+/// samples confirms it. Any other file is refused.
 pub(super) fn without_time(
     source: &Source<'_>,
     first: usize,
