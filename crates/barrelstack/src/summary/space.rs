@@ -42,7 +42,8 @@ described! {
         pub devices: Devices,
         /// The energy balance; null where the numbers are no longer finite.
         pub energy: Option<EnergyBalance>,
-        /// The vertical component of the ground motion, and the horizontal component that the scenario names.
+        /// The horizontal component of the ground motion that the scenario names; its field `vertical` states whether
+        /// there is a vertical component.
         pub motion: Option<MotionSummary>,
         /// The other horizontal component of the ground motion; null where the motion has only one.
         pub other_component: Option<MotionSummary>,

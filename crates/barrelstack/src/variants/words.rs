@@ -270,6 +270,9 @@ pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
         (true, false) => format!("differ from it {places}"),
         (false, true) => format!("differ from it {constants}"),
         (true, true) => format!("differ from it {places}, and {constants}"),
+        (false, false) if imperfections.sign => {
+            "differ from it only in that half of them are mirrored".to_owned()
+        }
         (false, false) => "do not differ from it".to_owned(),
     };
     sentences.push(format!("The stack as stated {stated}; the variants {differ}."));
@@ -382,10 +385,12 @@ pub fn percent(share: f64) -> String {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
+    use std::ops::ControlFlow;
 
-    use super::{Spread, Tone, View, headline, headline_in_space, measure, percent, tone};
-    use crate::variants::Range;
-    use crate::variants::{ShareAt, Unknown};
+    use super::{
+        Scenario, Spread, Tone, View, fine, headline, headline_in_space, measure, percent, tone,
+    };
+    use crate::variants::{Range, RunChoice, ShareAt, Unknown, answer};
 
     fn range(p05: f64, p95: f64, least: f64, most: f64) -> Range {
         Range { p05, p50: 0.5 * (p05 + p95), p95, least, most }
@@ -638,5 +643,23 @@ mod tests {
         // A measurement that does not narrow the range is not recommended.
         one.range = Some([0.4, 1.0]);
         assert_eq!(measure(&one), None);
+    }
+
+    #[test]
+    fn mirrored_variants_are_stated_if_nothing_else_differs() {
+        let said = |sign: &str| {
+            let changes =
+                ["run.duration=0.1 s", "imperfections.variants=2", "imperfections.drawn=false"];
+            let changes = changes.iter().chain(&["unknowns.drawn=false", sign]);
+            let changes: Vec<String> = changes.map(|&change| change.to_owned()).collect();
+            let scenario = Scenario::builtin("candia-8-barrels", &changes).unwrap();
+            let mut go = |_| ControlFlow::Continue(());
+            let answer = answer(&scenario, RunChoice::Number(0), &mut go).unwrap();
+            fine(&answer.decides.summary, &scenario).join(" ")
+        };
+        assert!(said("imperfections.sign=false").contains("the variants do not differ from it"));
+        let mirrored = said("imperfections.sign=true");
+        let half = "differ from it only in that half of them are mirrored";
+        assert!(mirrored.contains(half), "{mirrored}");
     }
 }

@@ -188,7 +188,7 @@ pub(super) fn stripe(
 /// In general, each case is one observation: the stack failed or stood at the intensity of the case. In an incremental
 /// dynamic analysis, the levels of a hunt depend on the results of earlier runs, so counts at these levels would be
 /// biased. Each hunt is therefore one observation: the capacity lies between the lowest level at which the stack failed
-/// and the level below it.
+/// and the level below it, or beyond the first or last level if there is no such pair.
 fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
     let measured = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
     if !cases.hunted {

@@ -195,7 +195,7 @@ pub(super) fn selected(cellar: Cellar, args: VariantArgs) -> anyhow::Result<(Cel
     let cellar = cellar.with_variants(count);
     match args.variant {
         Some(number) if number > count => bail!(
-            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the room as stated; --variants {number} runs so many"
+            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the room as stated; --variants {number} runs {number} variants"
         ),
         Some(number) => Ok((cellar, RunChoice::Number(number))),
         None => Ok((cellar, RunChoice::Typical)),

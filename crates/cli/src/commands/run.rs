@@ -41,8 +41,8 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     if scenario.is_spatial() && args.with_engine.is_some() {
         bail!(
-            "--with-engine: the program in that page simulates planar scenarios, but not three-dimensional ones: \
-             leave it out{}",
+            "--with-engine: the program in that page simulates planar scenarios, but not three-dimensional ones; \
+             leave this option out{}",
             if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
         );
     }
@@ -124,7 +124,7 @@ pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Re
     };
     match args.variant {
         Some(number) if number > count => bail!(
-            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the stack as stated; --variants {number} runs so many"
+            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the stack as stated; --variants {number} runs {number} variants"
         ),
         Some(number) => Ok(RunChoice::Number(number)),
         None => Ok(RunChoice::Typical),
