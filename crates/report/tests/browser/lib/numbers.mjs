@@ -282,7 +282,7 @@ const shareOf = ({ share, interval }) => percents([share, ...interval]);
 export async function ofCellar(page, document) {
   const shown = await contents(page), reading = new Reading();
   isHeadline(shown, document);
-  const [stacks] = tablesOf(shown, "All stacks"), [aisles] = tablesOf(shown, "Times are counted"), [rows] = tablesOf(shown, "Rows:");
+  const [stacks] = tablesOf(shown, "All stacks"), [aisles] = tablesOf(shown, "Times are counted"), [rows] = tablesOf(shown, "For each row:");
   const times = (found) => (found === null ? [null] : found.least === found.most ? [found.p50] : [found.p05, found.p95]);
   demand(stacks.rows.length === document.stacks.length && rows.rows.length === document.rows.length, "the page has other stacks than the JSON");
   for (const one of document.stacks) {
