@@ -648,10 +648,14 @@ mod tests {
     #[test]
     fn mirrored_variants_are_stated_if_nothing_else_differs() {
         let said = |sign: &str| {
-            let changes =
-                ["run.duration=0.1 s", "imperfections.variants=2", "imperfections.drawn=false"];
-            let changes = changes.iter().chain(&["unknowns.drawn=false", sign]);
-            let changes: Vec<String> = changes.map(|&change| change.to_owned()).collect();
+            let changes = [
+                "run.duration=0.1 s",
+                "imperfections.variants=2",
+                "imperfections.drawn=false",
+                "unknowns.drawn=false",
+                sign,
+            ]
+            .map(str::to_owned);
             let scenario = Scenario::builtin("candia-8-barrels", &changes).unwrap();
             let mut go = |_| ControlFlow::Continue(());
             let answer = answer(&scenario, RunChoice::Number(0), &mut go).unwrap();
