@@ -133,8 +133,8 @@ impl LeaveOneOut {
 /// Each group is `(sum, cases)`. The interval is Wilson's, with a quantile of Student's t distribution in place of the
 /// normal quantile. In place of the number of cases, the formula uses the number of independent cases whose mean would
 /// have the variance that the scatter of the groups gives for the mean of all cases, or the number of groups if these
-/// do not scatter at all. A few groups may agree by chance. The interval is therefore extended to the means that would result if the groups that the sample
-/// may have missed ([`unobserved`]) contained only zeros, or only ones.
+/// do not scatter at all. A few groups may agree by chance. The interval is therefore extended to the means that would
+/// result if the groups that the sample may have missed ([`unobserved`]) contained only zeros, or only ones.
 pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
     let count = groups.len() as f64;
     let cases: f64 = groups.iter().map(|(_, cases)| cases).sum();

@@ -20,20 +20,17 @@ use crate::variants::Case;
 /// Number of steps between two calls of `stop`.
 const PATIENCE: u32 = 64;
 
-/// Number of lanes of the vector unit.
-pub(crate) const NUMBER: usize = 8;
-
-/// Smallest number of cases that run in lanes. Fewer cases would take longer in lanes than one after the other: for
-/// falling stacks a step of all lanes takes as long as six to eight steps of a single run, for standing stacks as long
-/// as four to five.
+/// Smallest number of cases that run in lanes. Fewer cases would take longer in lanes than one after the other: with
+/// AVX2, a step of all lanes takes as long as six to eight steps of a single run for falling stacks, and as long as
+/// four to five for standing stacks.
 const FEWEST: usize = 6;
 
 /// A case whose stack is at rest, and its index among all cases.
 pub(crate) type Ready = (usize, Prepared);
 
-/// Runs cases on one core, in lanes if `in_lanes` is `true` and the machine has a vector unit. `report` receives the index and
-/// the result of each finished case; the work ends when `stop` returns `true`. Returns the cases that have to be run
-/// one after the other.
+/// Runs cases on one core, in lanes if `in_lanes` is `true` and the machine has a vector unit. `report` receives the
+/// index and the result of each finished case; the work ends when `stop` returns `true`. Returns the cases that have to
+/// be run one after the other.
 pub(crate) fn run(
     in_lanes: bool,
     ready: Vec<Ready>,

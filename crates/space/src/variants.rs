@@ -19,6 +19,7 @@ use barrelstack::variants::{
 use barrelstack::watch::Ending;
 use barrelstack::{RunFailure, Scenario, pool};
 use barrelstack_dynamics::Vec3;
+use barrelstack_dynamics::lanes::LANES;
 
 use crate::fate::Heading;
 use crate::ground::Ground;
@@ -257,7 +258,7 @@ fn run_all_of<T: Sync>(
     let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
     let size = items.len().div_ceil(threads).clamp(1, BATCH);
     // A few cases beyond full lanes run faster one after the other.
-    let size = if size > lanes::NUMBER { size - size % lanes::NUMBER } else { size };
+    let size = if size > LANES { size - size % LANES } else { size };
     let chunks: Vec<&[T]> = items.chunks(size).collect();
     pool::map(&chunks, work, &|_| ()).concat()
 }

@@ -26,7 +26,7 @@ pub(super) struct BundleMask<U: Unit>(mask64x8<U>);
 
 impl<U: Unit> Real for Bundle<U> {
     type Mask = BundleMask<U>;
-    const LANES: usize = 8;
+    const LANES: usize = super::LANES;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -93,7 +93,7 @@ impl<U: Unit> Real for Bundle<U> {
 }
 
 impl<U: Unit> Mask for BundleMask<U> {
-    const LANES: usize = 8;
+    const LANES: usize = super::LANES;
 
     #[inline(always)]
     fn from_lanes(mut value: impl FnMut(usize) -> bool) -> Self {

@@ -24,6 +24,9 @@ pub use lanewise::{Lanewise, PerLane};
 pub use topology::Topology;
 pub(crate) use topology::kind;
 
+/// Number of lanes of a bundle, for every vector unit.
+pub const LANES: usize = 8;
+
 /// Upper bound of the number of lanes of a bundle.
 const MOST_LANES: usize = 16;
 
