@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use anyhow::{Context as _, bail, ensure};
 
 use crate::extra::OLDEST;
-use crate::steps::{cargo, target};
+use crate::steps::{RELEASED, cargo, target};
 
 /// Target triple of browsers.
 const TARGET: &str = "wasm32-unknown-unknown";
@@ -83,9 +83,9 @@ impl Build {
             megabytes(&bytes),
             imported.join(", ")
         );
-        let example = ["run", "--quiet", "--release", "--package", "barrelstack-web"];
         let status = Command::new(cargo())
-            .args(example)
+            .args(["run", "--quiet", "--release"])
+            .args(RELEASED)
             .args(["--example", "page", "--", PARTS, TITLE, language])
             .args([file.as_path(), page])
             .current_dir(&self.root)
