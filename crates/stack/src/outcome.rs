@@ -123,7 +123,7 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
     )
 }
 
-/// Returns the collapse that begins at a time (s) with the loss of seat of a body, in a stack with `levels` levels.
+/// Returns the collapse of a stack with `levels` levels that begins when a body leaves its seat at `time` (s).
 ///
 /// The body is given by name, kind and level; `slid` is `true` if the body is a rack that slid off along the barrels.
 pub fn collapse(

@@ -39,8 +39,8 @@ pub const WHOLE_STEP: f64 = 0.05;
 /// springs.
 ///
 /// Bodies at rest require stability only. For resting contacts, steps are not divided at penetrations up to twice
-/// [`WHOLE_STEP`]. At this limit, the step is 0.83 of the critical step, since the stiffness grows with the square root
-/// of the penetration.
+/// [`WHOLE_STEP`]. At twice [`WHOLE_STEP`], the step is 0.83 of the critical step, since the stiffness grows with the
+/// square root of the penetration.
 pub const WHOLE_STEP_SHARE: f64 = 0.7;
 
 /// Load on the lightest body through impact contacts, divided by the weight of the heaviest body.

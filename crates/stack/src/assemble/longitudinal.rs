@@ -37,7 +37,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
         .ok_or_else(|| {
             AssembleError::Stack(format!(
                 "a barrel in longitudinal section needs 0 < head_diameter < bilge_diameter and room for a \
-                 chime rounded by {CHIME_RADIUS} m, found {} m and {} m",
+                 chime with a radius of {CHIME_RADIUS} m, found diameters of {} m and {} m",
                 barrel.head_diameter, barrel.bilge_diameter
             ))
         })?;
@@ -228,9 +228,8 @@ struct Seating {
     /// Height (m) of the right rail above the mean height of both rails; the left rail is below the mean by the same
     /// amount.
     ///
-    /// A rail between two inclined barrels touches the underside of one and the upper side of the other. Barrels are
-    /// symmetric, so the top and the underside of the rail shift by the same amount: each rail keeps its thickness, and
-    /// one rail sits slightly higher than the other.
+    /// A rail lies between a barrel below and a barrel above, which have the same inclination. The top and the
+    /// underside of the rail therefore rise by the same amount, so that the rail keeps its thickness.
     rise: f64,
 }
 

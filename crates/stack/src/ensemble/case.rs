@@ -153,8 +153,8 @@ impl CaseResult {
 
     /// Creates the result of a case whose stack falls under its own weight before it is shaken.
     ///
-    /// The first argument is the name and the level of the lowest unsupported body. The result is a collapse at time
-    /// zero of this level and all levels above; the barrels of these levels count as fallen. `barrels` lists all
+    /// The first argument is the name and the level of the lowest unsupported body. The result is a collapse, at time
+    /// zero, of this level and all levels above, and all barrels of these levels count as fallen. `barrels` lists all
     /// barrels of the stack, each with its name, its level, its height (m) above the floor, and its wine (m³). The
     /// height counts as the drop of the barrel.
     pub fn fallen_at_rest(

@@ -22,7 +22,7 @@ pub struct CaseColumn {
     pub get: Get,
 }
 
-/// Function that returns a value of a case, by the type of the value.
+/// Function that returns the value of a column for a case; each variant is for one type of value.
 #[derive(Clone, Copy, Debug)]
 pub enum Get {
     /// An integer.

@@ -147,7 +147,7 @@ impl Share {
         self.0 = now;
     }
 
-    /// Ends the case after a simulated fraction, 0 to 1.
+    /// Ends the case, of which the fraction `share` (0 to 1) has been simulated.
     pub fn end(mut self, share: f64) {
         self.reached(share);
         if share < 0.99 {

@@ -142,7 +142,7 @@ impl Recording {
             + 2 * Joints::new(assembly).joints.len()
     }
 
-    /// Returns the channel with a name, in which blanks may replace underscores: `B4.1 displacement x`.
+    /// Returns the channel with the given name. Spaces in the name count as underscores, as in `B4.1 displacement x`.
     pub fn channel(&self, name: &str) -> Option<&Channel> {
         let name = column_name(name);
         self.channels.iter().find(|channel| channel.name == name)

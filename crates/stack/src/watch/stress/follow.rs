@@ -14,7 +14,7 @@ use super::places::{on_nodes, on_surface};
 use super::{BoundaryPoint, Cells, StressEnvelope, Stresses};
 use crate::assemble::{Assembly, PartKind};
 
-/// Range of contact points for which a contact element loads the same cells of one of its bodies, and the largest force
+/// Range of contact points for which a contact element loads the same cells of a body. Also contains the largest force
 /// of the element since its contact point entered this range.
 ///
 /// As long as the contact point stays in this range, only the largest force matters. In most steps, most contacts
@@ -42,12 +42,12 @@ enum CellRange {
     Strip,
 }
 
-/// A body of a contact pair for which a stress envelope is recorded.
+/// One of the two bodies of a contact pair, for which a stress envelope is recorded.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     body: BodyId,
     range: CellRange,
-    /// `true` if the body is the target of the pair; contact points are stated in the frame of the target's surface.
+    /// `true` if the body is the target of the pair.
     is_target: bool,
 }
 
