@@ -60,7 +60,7 @@ enum Depth {
 enum Outline {
     /// Corners (m), counterclockwise.
     Polygon(Vec<Vec2>),
-    /// The half-plane below the line that has a unit normal and passes through a point (m).
+    /// The half-plane below a line, given by a point (m) on the line and by the unit normal of the line.
     Below(Vec2, Vec2),
 }
 

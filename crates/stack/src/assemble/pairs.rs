@@ -79,8 +79,8 @@ impl Pairs<'_> {
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }
 
-    /// Adds the contact pairs of two solids, without nodes along their faces: one pair if a solid is a circle, otherwise
-    /// two pairs, which test the corners and arcs of each solid against the other.
+    /// Adds the contact pairs of two solids, without nodes along their faces: one pair if a solid is a circle,
+    /// otherwise two pairs, which test the corners and arcs of each solid against the other.
     ///
     /// `counts` states which contacts count if the first solid is the contactor, and if the second is.
     fn exact(

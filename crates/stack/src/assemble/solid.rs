@@ -28,7 +28,7 @@ pub(crate) struct Solid {
 /// What a solid of a rack supports: the rack itself, a barrel, or the next rack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seat {
-    /// None: the solid touches other bodies in impacts only.
+    /// Nothing: the solid touches other bodies in impacts only.
     None,
     /// The rack stands on this solid: on the ground, or on the support with this index.
     OnSupport(usize),

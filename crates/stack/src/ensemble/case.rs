@@ -15,7 +15,7 @@ use super::trail::Trail;
 /// A case that is ready to run.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// The scenario; its own motion is ignored.
+    /// The scenario; `ground` is used instead of its own motion.
     pub scenario: Arc<Scenario>,
     /// Ground motion, shared by all cases with the same motion and intensity.
     pub ground: Arc<Ground>,
