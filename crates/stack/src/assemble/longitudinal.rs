@@ -3,9 +3,9 @@
 //! Barrel profiles lie on the rails of racks, which stand on the profiles below or on the posts of the racks below. The
 //! model is a slice one barrel wide: a rack that carries several barrels side by side contributes a share of its mass
 //! to each slice. A rail is a tube: its upper side carries the barrel above, and its lower side lies on the barrel
-//! below or on the ground. The contacts of the tube act at nodes, as in the paper, or on one contact element, at the
-//! point where rail and barrel touch. Posts stand beside the barrels, at the corners of a rack: they touch racks and
-//! the ground, but no barrel.
+//! below or on the ground. The contacts of the tube act at nodes, as in Candia, de la Llera and Almazán (2008), or on
+//! one contact element, at the point where rail and barrel touch. Posts stand beside the barrels, at the corners of a
+//! rack: they touch racks and the ground, but no barrel.
 
 use barrelstack_dynamics::shape::{BarrelProfile, Polygon, PolygonError};
 use barrelstack_dynamics::{BodyId, Shape, Vec2, math};

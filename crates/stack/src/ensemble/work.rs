@@ -67,7 +67,7 @@ impl Work {
 struct Clock {
     /// Number of threads that are doing this kind of work now.
     threads: AtomicI64,
-    /// Sum of all end times minus the sum of all start times (ns).
+    /// Sum of the times (ns) at which threads finished this work, minus the sum of the times at which threads began it.
     sum: AtomicI64,
 }
 

@@ -204,8 +204,8 @@ impl Barrel {
         }
     }
 
-    /// Returns half of the distance (m) between the heads at which the interior has the nominal volume. If the interior
-    /// is too small even at the largest possible distance, returns half of the largest distance.
+    /// Returns half of the distance (m) between the heads, chosen so that the interior has the nominal volume. If the
+    /// interior is too small even at the largest possible distance, returns half of the largest distance.
     fn half_room(&self) -> f64 {
         let most = 0.5 * self.length - self.stave_thickness;
         let inner = |x: f64| (0.5 * self.diameter_at(x) - self.stave_thickness).max(0.0);

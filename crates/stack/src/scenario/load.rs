@@ -350,7 +350,7 @@ fn parsed(sources: &Sources, file: usize) -> Result<Table, ScenarioError> {
     Ok(table)
 }
 
-/// Overlays the table of a file on the scenario that it extends.
+/// Overlays the table of a file on the tables of the scenarios that the file extends.
 pub(super) fn extend(
     sources: &mut Sources,
     table: Table,

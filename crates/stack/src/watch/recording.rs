@@ -268,7 +268,7 @@ impl Recording {
         }
     }
 
-    /// Stores the largest forces at the end of the run, and sorts the joints by support and bodies.
+    /// Stores the largest forces at the end of the run, and sorts the joints as [`Joints::listed`] does.
     pub(crate) fn finish(&mut self) {
         for (history, joint) in self.joints.iter_mut().zip(&self.forces.joints) {
             history.joint = joint.clone();

@@ -22,8 +22,8 @@ named! {
     }
 }
 
-/// Dissipation of a normal law, stated directly or by a restitution. With this dissipation, the restitution of an
-/// impact depends on its mass or its speed.
+/// Dissipation of a normal law, stated directly or by a restitution. The resulting restitution depends on the mass or
+/// the speed of the body that strikes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
     /// `c` of a linear law (N·s/m per node or seat, N·s/m² per length of boundary), or `d` (s/m) of a Hunt-Crossley
@@ -149,7 +149,7 @@ impl Interface {
     }
 
     /// Multiplies the damping of a linear law by a factor. If a restitution is stated instead of the damping, it is
-    /// changed so that the damping ratio increases by the factor.
+    /// changed so that the damping ratio is multiplied by the factor.
     pub fn damp(&mut self, factor: f64) {
         let (damping, to_ratio, from_ratio): (_, DampingRatio, Restitution) = match &mut self.normal
         {

@@ -255,7 +255,7 @@ fn missing_problem(reader: &Reader<'_>, name: &str, dimension: Dimension) -> Pro
     Problem::Missing { field: name.to_owned(), section: reader.label(), example }
 }
 
-/// Writes the contact law of a pair of a stack as a table.
+/// Writes a contact law of a stack as a table.
 pub(in crate::scenario) fn write(section: &'static Section, interface: &Interface) -> Table {
     let mut writer = Writer::variant(section, law_of(&interface.normal));
     write_fields(&mut writer, interface);
