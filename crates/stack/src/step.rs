@@ -24,8 +24,8 @@ const REFERENCE: f64 = 0.01;
 
 /// Time step during impacts, which last a few milliseconds, as a fraction of the critical time step of impacts.
 ///
-/// With this fraction, the energy balance of the cases of Candia, de la Llera and Almazán (2008) closes to 3e-5. Halving
-/// the step changes the time of every fall by at most 0.3 ms (`tests/paper.rs`).
+/// With this fraction, the energy balance of the cases of Candia, de la Llera and Almazán (2008) closes to 3e-5.
+/// Halving the step changes the time of every fall by at most 0.3 ms (`tests/paper.rs`).
 pub const IMPACT_SHARE: f64 = 0.4;
 
 /// Penetration up to which steps are not divided in impacts, as a fraction of `REFERENCE`; the penetration of resting

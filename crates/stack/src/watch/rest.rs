@@ -88,7 +88,7 @@ pub struct Rest<R: Real = f64> {
     calm_from: R,
     /// Largest kinetic energy, divided by the mass, with which a body counts as at rest (m²/s²).
     slow: R,
-    /// Duration (s) for which all bodies must be slow.
+    /// Duration (s) for which all bodies must be slow before they count as at rest.
     hold: R,
     bodies: Vec<Mover<R>>,
     /// Time (s) at which a body was last in motion.
