@@ -82,9 +82,9 @@ impl Ending {
 /// and approaches no other body also counts as at rest: it decelerates at about 0.2 m/s² and cannot reach any body.
 #[derive(Clone, Debug)]
 pub struct Rest<R: Real = f64> {
-    /// Time (s) from which the ground is still; infinite if the run always lasts for its whole duration.
+    /// Time (s) from which the ground is still; infinite if the run does not end when all bodies are at rest.
     still_from: R,
-    /// Time (s) from which the ground is calm; infinite if the run always lasts for its whole duration.
+    /// Time (s) from which the ground is calm; infinite if the run does not end when all bodies are at rest.
     calm_from: R,
     /// Largest kinetic energy, divided by the mass, with which a body counts as at rest (m²/s²).
     slow: R,
