@@ -228,7 +228,7 @@ impl Stack<'_> {
     }
 }
 
-/// A case and the stack on which it runs.
+/// A case that is ready to run, and the index of its stack.
 #[derive(Clone, Copy)]
 struct Run<'a> {
     case: &'a Prepared,

@@ -116,8 +116,9 @@ impl Scenario {
         scenario
     }
 
-    /// Returns the motion of a record with the record settings of the scenario. If the scenario has no record, the
-    /// first horizontal component with the default processing is used.
+    /// Returns a motion that consists of the given record, with the components and the processing that the scenario
+    /// states for its own record. If the scenario has no record, the first horizontal component with the default
+    /// processing is used.
     fn recorded(&self, source: RecordSource) -> RecordMotion {
         match &self.motion.source {
             MotionSource::Record(own) => RecordMotion { source, ..own.clone() },

@@ -4,7 +4,7 @@ use crate::assemble::{Assembly, PartKind};
 use crate::scenario::View;
 use crate::watch::{Fates, Loss};
 
-/// Collapse mode of a stack; all modes except gravity are taken from the shaking-table tests of the paper.
+/// Collapse mode of a stack. The names of all modes except gravity are those of Candia, de la Llera and Almazán (2008).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CollapseMode {
     /// Barrels of the top level are thrown out of their cradles, or off the stack with their rack.
@@ -103,8 +103,8 @@ impl Outcome {
 /// - A rack of the top level, or a barrel from a rack that keeps its own seat: ejection.
 /// - Any other rack: rocking of its level and all above.
 ///
-/// This follows the paper, which classifies the loss of the upper two of three levels as rocking, and the loss of the
-/// top level of four (barrels and rack) as ejection of the top barrels.
+/// This follows Candia, de la Llera and Almazán (2008), who classify the loss of the upper two of three levels as
+/// rocking, and the loss of the top level of four (barrels and rack) as ejection of the top barrels.
 pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
     if assembly.levels == 0 {
         return Outcome::NotJudged;
@@ -123,7 +123,7 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
     )
 }
 
-/// Returns the collapse that begins at a time (s) with the loss of seat of a body, in a stack with `levels` levels.
+/// Returns the collapse of a stack with `levels` levels that begins when a body leaves its seat at `time` (s).
 ///
 /// The body is given by name, kind and level; `slid` is `true` if the body is a rack that slid off along the barrels.
 pub fn collapse(

@@ -5,7 +5,8 @@ use barrelstack_dynamics::{Body, BodyId, Linear as _, Planar, Pose, Shape, State
 
 use crate::assemble::{AssembleError, Assembly, Part, PartKind};
 
-/// Largest initial overlap (m) of two bodies that can be explained by settlement under their weight.
+/// Largest accepted overlap (m) of two bodies in the initial state. Bodies that have settled under their weight overlap
+/// by less.
 pub const ALLOWED: f64 = 2e-3;
 
 /// Number of corners n of the polygon that represents a circle; the polygon lies inside the circle by at most `r (1 −
@@ -59,7 +60,7 @@ enum Depth {
 enum Outline {
     /// Corners (m), counterclockwise.
     Polygon(Vec<Vec2>),
-    /// The half-plane below the line that has a unit normal and passes through a point (m).
+    /// The half-plane below a line, given by a point (m) on the line and by the unit normal of the line.
     Below(Vec2, Vec2),
 }
 
@@ -202,8 +203,8 @@ fn parting(a: &Outline, b: &Outline) -> f64 {
     }
 }
 
-/// Returns the shortest displacement (m) along an outward normal of the polygon `sides` that separates the polygon
-/// `corners` from it; zero or less if the polygons are apart.
+/// Returns the shortest displacement (m), along an outward normal of the polygon `sides`, that separates the polygon
+/// `corners` from the polygon `sides`; zero or less if the polygons are apart.
 fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
     let mut least = f64::INFINITY;
     for (i, from) in sides.iter().enumerate() {

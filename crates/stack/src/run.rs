@@ -368,10 +368,10 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
 }
 
 impl Run {
-    /// Returns the basis of the contact constants, such as "seat", or "mixed" if not all contact laws have the same
-    /// basis.
+    /// Returns the unit for which the contact constants are stated ([`Basis`]), such as "seat"; "mixed" if the contact
+    /// laws have different units.
     ///
-    /// In a stack, only the contact laws of seats are considered; in a free scene, all interfaces.
+    /// In a stack, only the contact laws of seats are considered; in a free scene, all contact laws.
     pub fn stiffness_basis(&self) -> &'static str {
         let model = &self.assembly.model;
         let seats = |interface: &&Interface<Planar>| {

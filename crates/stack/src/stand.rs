@@ -64,7 +64,8 @@ impl<'a> Stack<'a> {
         Self { scenario, standing: build() }
     }
 
-    /// Returns `true` if another scenario has the same stack: equal except for motion, end time and recording.
+    /// Returns `true` if another scenario has the same stack. The scenarios may differ in motion, end time and
+    /// recording.
     pub(crate) fn is_of(&self, other: &Scenario) -> bool {
         let own = self.scenario;
         let stands = |scenario: &Scenario| {

@@ -24,8 +24,8 @@ const REFERENCE: f64 = 0.01;
 
 /// Time step during impacts, which last a few milliseconds, as a fraction of the critical time step of impacts.
 ///
-/// With this fraction, the energy balance of the paper's cases closes to 3e-5. Halving the step changes the time of
-/// every fall by at most 0.3 ms (`tests/paper.rs`).
+/// With this fraction, the energy balance of the cases of Candia, de la Llera and Almazán (2008) closes to 3e-5.
+/// Halving the step changes the time of every fall by at most 0.3 ms (`tests/paper.rs`).
 pub const IMPACT_SHARE: f64 = 0.4;
 
 /// Penetration up to which steps are not divided in impacts, as a fraction of `REFERENCE`; the penetration of resting
@@ -39,8 +39,8 @@ pub const WHOLE_STEP: f64 = 0.05;
 /// springs.
 ///
 /// Bodies at rest require stability only. For resting contacts, steps are not divided at penetrations up to twice
-/// [`WHOLE_STEP`]. At this limit, the step is 0.83 of the critical step, since the stiffness grows with the square root
-/// of the penetration.
+/// [`WHOLE_STEP`]. At twice [`WHOLE_STEP`], the step is 0.83 of the critical step, since the stiffness grows with the
+/// square root of the penetration.
 pub const WHOLE_STEP_SHARE: f64 = 0.7;
 
 /// Load on the lightest body through impact contacts, divided by the weight of the heaviest body.
@@ -66,8 +66,8 @@ const FORESEEN_REBOUND: f64 = 0.05;
 /// Radius (m) above which an arc of a boundary counts as nearly straight. The first value is for contacts with
 /// constants per seat, the second for other contacts.
 ///
-/// The lever arms of arcs with a smaller radius, such as the staves of the paper's cases, are overestimated by a factor
-/// of up to four.
+/// The lever arms of arcs with a smaller radius, such as the staves in the cases of Candia, de la Llera and Almazán
+/// (2008), are overestimated by a factor of up to four.
 const NEARLY_STRAIGHT: (f64, f64) = (1.0, 4.0);
 
 /// Time step of a model, and its division during impacts.

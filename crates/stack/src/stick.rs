@@ -20,8 +20,8 @@ const REPORTED: f64 = 0.05;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SoftStick {
     interface: String,
-    /// Tangential displacement (m) at which the friction springs of the interface yield together under the normal
-    /// forces at rest.
+    /// Tangential displacement (m) at which the friction springs of the interface, taken together, yield under the
+    /// normal forces at rest.
     yields: f64,
     /// Peak displacement of the ground (m).
     swing: f64,

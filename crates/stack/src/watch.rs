@@ -82,7 +82,7 @@ impl End {
     }
 }
 
-/// Duration (s), at full scale, for which a run that ends by the verdict continues after the first loss of a seat.
+/// Duration (s), at full scale, for which a run with [`Until::Verdict`] continues after the first loss of a seat.
 pub const VERDICT: f64 = 2.0;
 
 /// Returns the duration (s) for which a run continues after a collapse, at the time scale of the scenario; infinity for

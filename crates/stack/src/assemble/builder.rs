@@ -17,7 +17,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) scale: Similitude,
     pub(crate) bodies: Vec<Body<Planar>>,
     pub(crate) parts: Vec<Part>,
-    /// Moment of inertia (kg·m²) of an unmodified barrel.
+    /// Moment of inertia (kg·m²) of a barrel without overrides.
     inertia: f64,
     /// Contact data of all surfaces: one list per body, in the order of the bodies.
     pub(super) touches: Vec<Vec<Touch>>,

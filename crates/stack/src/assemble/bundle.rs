@@ -2,7 +2,7 @@
 //!
 //! Seats that stand one behind the other coincide in a planar model. Where constants are stated per seat, a contact has
 //! the combined stiffness and damping of all seats that it represents. A stack thus has the same stiffness, damping and
-//! friction in either planar model and in the three-dimensional model, however `stack.rack.contact` divides its seats.
+//! friction in either planar model and in the three-dimensional model, for every value of `stack.rack.contact`.
 //!
 //! | seat | a contact across the barrels | a contact along the barrels | a contact in three dimensions |
 //! |---|---|---|---|
@@ -18,7 +18,7 @@ use super::longitudinal::has_rows;
 use crate::scenario::{Basis, Cradle, Friction, Interface, RackKind, SeatContact, StackPair};
 use crate::scenario::{StackSpec, View};
 
-/// Number of rails of a rack that coincide in the planar model across the barrels; the same holds for its posts.
+/// Number of rails of a rack that coincide in the planar model across the barrels. Its posts also coincide in pairs.
 const RAILS: f64 = 2.0;
 
 /// The kind of model that represents a stack.

@@ -22,7 +22,7 @@ static WORDS: Words = Words::silent("wine");
 /// barrel, and breaking waves give more.
 const DAMPING_RATIO: f64 = 0.01;
 
-/// Natural angular frequency (rad/s) of the sloshing mass on the spring that supports it; equal to 15 Hz.
+/// Natural angular frequency (rad/s) of the sloshing mass on the spring that supports it; the frequency is 15 Hz.
 ///
 /// This is far above the sloshing frequency, but the support is not stiffer than a seat.
 const HOLDING: f64 = 30.0 * PI;

@@ -119,16 +119,17 @@ fn element(
     element
 }
 
-/// Group of a body, and the boundaries that other bodies can touch.
+/// The group of a body, and the boundaries at which other bodies can touch it.
 struct Outer<'a> {
     group: Option<&'a str>,
     boundaries: Vec<Boundary<'a>>,
 }
 
-/// Surfaces and node sets of a body that have the same kind, as index ranges.
+/// A boundary of a body: its kind, and the index ranges of its surfaces and of its node sets.
 ///
-/// The surface and the nodes of a part have the same position in both ranges; nodes at individually chosen points have
-/// no surface.
+/// Every part of the boundary has one surface. If a rule places the nodes, every part also has one node set, and both
+/// ranges list the parts in the same order. Nodes at individually chosen points form a single node set that belongs to
+/// no part.
 struct Boundary<'a> {
     kind: &'a str,
     surfaces: Range<usize>,
@@ -136,13 +137,13 @@ struct Boundary<'a> {
 }
 
 impl Boundary<'_> {
-    /// Returns the node set of the part with this surface; `None` if the points of the nodes are chosen individually.
+    /// Returns the node set of the part that has this surface; `None` if the nodes are at individually chosen points.
     fn nodes_of(&self, surface: usize) -> Option<usize> {
         let at = self.nodes.start + surface - self.surfaces.start;
         (self.nodes.len() == self.surfaces.len()).then_some(at)
     }
 
-    /// Returns the surface of the part with this node set.
+    /// Returns the surface of the part that has this node set.
     fn surface_of(&self, nodes: usize) -> usize {
         self.surfaces.start + nodes - self.nodes.start
     }
@@ -169,11 +170,13 @@ fn kinds(scene: &FreeScene, bodies: &[Body<Planar>], outer: &[Outer<'_>]) -> Vec
     bodies.iter().zip(outer).map(kind).collect()
 }
 
-/// Returns the contact pairs of two bodies.
+/// Returns the contact pairs of two bodies. Each pair tests the nodes of one boundary against the surface of another.
 ///
-/// Two boundaries of the same kind are tested in both directions, except for two circles, for which the rolling node of
-/// one circle is sufficient. Two convex boundaries without nodes are also tested in both directions. Between a convex
-/// boundary and a circle, only the rolling node of the circle is tested.
+/// The first kind of an interface provides the nodes, and the second kind provides the surface. If both kinds are the
+/// same, two boundaries form two pairs, so that the nodes of each are tested against the surface of the other. Two
+/// convex boundaries with the rule [`Exact`](scenario::Nodes::Exact) also form two pairs. With the rules `Exact` and
+/// `Rolling`, a circle has a single node, its deepest point. Two such circles, or such a circle and a convex boundary
+/// with the rule `Exact`, therefore form one pair only.
 fn pairs(
     scene: &FreeScene,
     between: [BodyId; 2],

@@ -10,10 +10,11 @@ use crate::scenario;
 /// Penetration (m) at which a nonlinear normal law is linearized to obtain the stiffness of the tangential spring.
 const STICK_REFERENCE: f64 = 2e-4;
 
-/// Damping ratio of the tangential spring under a rebound law, for a contact that carries the mass [`STICK_MASS`].
+/// Damping ratio of the tangential spring of a contact with the normal law [`NormalLaw::Rebound`], if the contact
+/// carries the mass [`STICK_MASS`].
 const STICK_DAMPING_RATIO: f64 = 0.1;
 
-/// Mass (kg) with which the tangential spring under a rebound law has the damping ratio [`STICK_DAMPING_RATIO`].
+/// Mass (kg) on a contact for which [`STICK_DAMPING_RATIO`] holds.
 const STICK_MASS: f64 = 50.0;
 
 /// Converts a contact law to an interface of the model; each contact of the interface represents a bundle of seats.

@@ -3,9 +3,9 @@
 //! Barrel profiles lie on the rails of racks, which stand on the profiles below or on the posts of the racks below. The
 //! model is a slice one barrel wide: a rack that carries several barrels side by side contributes a share of its mass
 //! to each slice. A rail is a tube: its upper side carries the barrel above, and its lower side lies on the barrel
-//! below or on the ground. The contacts of the tube are tested at nodes, as in the paper, or exactly, with one contact
-//! element at the point where rail and barrel touch. Posts stand beside the barrels, at the corners of a rack: they
-//! touch racks and the ground, but no barrel.
+//! below or on the ground. The contacts of the tube act at nodes, as in Candia, de la Llera and Almazán (2008), or on
+//! one contact element, at the point where rail and barrel touch. Posts stand beside the barrels, at the corners of a
+//! rack: they touch racks and the ground, but no barrel.
 
 use barrelstack_dynamics::shape::{BarrelProfile, Polygon, PolygonError};
 use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
@@ -22,9 +22,9 @@ pub const CHIME_RADIUS: f64 = 0.01;
 /// Cosine of the largest angle (73°) between contact normal and face normal at which the nodes of a rail's face carry
 /// the contact.
 ///
-/// Contacts at larger angles, such as the chime of a barrel that has slid off, are tested exactly. Cosines from 0 to
-/// 0.7 were compared on seven stacks, including the worst known cases; this cosine gave the smallest residual of the
-/// energy balance, at most 8.3e-5.
+/// Contacts at larger angles, such as those of the chime of a barrel that has slid off, are found without the nodes.
+/// Cosines from 0 to 0.7 were compared on seven stacks, including the worst known cases; this cosine gave the smallest
+/// residual of the energy balance, at most 8.3e-5.
 const WIDEST: f64 = 0.3;
 
 /// Adds all levels. Returns the height (m) of the stack and the displacement (m) beyond which a rack is no longer
@@ -37,7 +37,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
         .ok_or_else(|| {
             AssembleError::Stack(format!(
                 "a barrel in longitudinal section needs 0 < head_diameter < bilge_diameter and room for a \
-                 chime rounded by {CHIME_RADIUS} m, found {} m and {} m",
+                 chime with a radius of {CHIME_RADIUS} m, found diameters of {} m and {} m",
                 barrel.head_diameter, barrel.bilge_diameter
             ))
         })?;
@@ -228,9 +228,8 @@ struct Seating {
     /// Height (m) of the right rail above the mean height of both rails; the left rail is below the mean by the same
     /// amount.
     ///
-    /// A rail between two inclined barrels touches the underside of one and the upper side of the other. Barrels are
-    /// symmetric, so the top and the underside of the rail shift by the same amount: each rail keeps its thickness, and
-    /// one rail sits slightly higher than the other.
+    /// A rail lies between a barrel below and a barrel above, which have the same inclination. The top and the
+    /// underside of the rail therefore rise by the same amount, so that the rail keeps its thickness.
     rise: f64,
 }
 

@@ -1,11 +1,12 @@
 //! Contact pairs of a stack: the boundaries that can touch, each pair with its contact law.
 //!
 //! A barrel touches its rack at the supports of the cradle. The underside of a rack touches the bodies on which the
-//! rack stands. These contacts are the seats. All other boundaries of these bodies, and any other two bodies, touch in
-//! impacts only. A circular barrel is tested against other solids at its deepest point. Two solids with corners are
-//! each tested against the other, and every contact belongs to one round piece (a corner or an arc). A face with nodes
-//! is tested at its nodes while the body that it carries lies in front of the face. Once that body has moved beside the
-//! face, the contact between the two is tested exactly, so that no contact counts twice.
+//! rack stands. These contacts are the seats. All other contacts occur in impacts only.
+//!
+//! A barrel with a circular section touches another solid at its deepest point. Two solids with corners touch at the
+//! corners and arcs of both, so each of the two solids is tested against the other. A face with nodes touches at its
+//! nodes while the body that it carries lies in front of the face. Once that body has moved beside the face, its
+//! contacts are found without the nodes, so that no contact counts twice.
 
 use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
 
@@ -78,10 +79,10 @@ impl Pairs<'_> {
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }
 
-    /// Adds the exact tests of two solids: a circle is tested against the other solid; two solids with corners are
-    /// tested in both directions.
+    /// Adds the contact pairs of two solids, without nodes along their faces: one pair if a solid is a circle,
+    /// otherwise two pairs, which test the corners and arcs of each solid against the other.
     ///
-    /// `counts` selects, for each test, the contacts that count.
+    /// `counts` states which contacts count if the first solid is the contactor, and if the second is.
     fn exact(
         &mut self,
         (a, solid_a): (BodyId, usize),
@@ -100,10 +101,10 @@ impl Pairs<'_> {
         }
     }
 
-    /// Returns the face with nodes by which a solid stands on a floor.
+    /// Returns the underside with which a solid stands on a floor; `None` if the contact uses no row of nodes.
     ///
-    /// A tube from end to end of a rack has a seat at each end; where constants are stated per seat, the tube has no
-    /// row of nodes.
+    /// If constants are stated per seat, a tube from end to end of a rack has one seat at each end instead of a row of
+    /// nodes.
     fn row_on_floor(&self, touch: &Touch) -> Option<NodedFace> {
         let per_seat = self.builder.spec.interfaces.rack_ground.basis == Basis::Seat;
         touch.below.filter(|_| !(per_seat && touch.seat == Seat::OnSupports))
@@ -166,7 +167,7 @@ impl Pairs<'_> {
         }
     }
 
-    /// Adds the exact tests of all solids of one body against all solids of another.
+    /// Adds the contact pairs of every solid of one body with every solid of another body.
     fn solids_of(&mut self, a: BodyId, b: BodyId, pair: StackPair) {
         for of_a in self.solids(a) {
             for of_b in self.solids(b) {
@@ -175,8 +176,8 @@ impl Pairs<'_> {
         }
     }
 
-    /// Adds the tests of a rack against a device. A rack stands on the platform of an isolator in the same way as on
-    /// the ground.
+    /// Adds the contact pairs of a rack with a device. A rack stands on the platform of an isolator in the same way as
+    /// on the ground.
     fn rack_and_device(&mut self, rack: BodyId, device: BodyId) {
         let carried = self.builder.parts[rack].carrier == Some(device);
         for solid in self.solids(rack) {

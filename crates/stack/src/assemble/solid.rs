@@ -11,10 +11,10 @@ pub(crate) struct Solid {
     /// Position of the frame of the shape (m).
     pub(super) offset: Vec2,
     pub(super) seat: Seat,
-    /// Nodes along the flat underside: positions (m) and tributary lengths (m); empty if the underside is tested
-    /// exactly.
+    /// Nodes along the flat underside: positions (m) and tributary lengths (m); empty if the underside has no row of
+    /// nodes.
     pub(super) below: Vec<(Vec2, f64)>,
-    /// Nodes along the flat top; empty if the top is tested exactly.
+    /// Nodes along the flat top; empty if the top has no row of nodes.
     pub(super) above: Vec<(Vec2, f64)>,
     /// Cosine of the largest angle between contact normal and face normal at which a contact still belongs to a face
     /// with nodes; see [`Face::widest`].
@@ -28,7 +28,7 @@ pub(crate) struct Solid {
 /// What a solid of a rack supports: the rack itself, a barrel, or the next rack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seat {
-    /// None: the solid touches other bodies in impacts only.
+    /// Nothing: the solid touches other bodies in impacts only.
     None,
     /// The rack stands on this solid: on the ground, or on the support with this index.
     OnSupport(usize),
@@ -59,7 +59,7 @@ pub(super) struct Touch {
     pub(super) seat: Seat,
     /// `true` if the solid never touches a barrel.
     pub(super) out_of_plane: bool,
-    /// Index of the node set for exact tests: the corners and arcs, or the rolling node of a circle.
+    /// Index of the node set for the whole boundary: its corners and arcs, or the single node of a circle.
     pub(super) exact: usize,
     /// The underside, if it carries nodes.
     pub(super) below: Option<NodedFace>,
@@ -80,15 +80,15 @@ pub(super) struct NodedFace {
 
 /// Value of [`Solid::widest`] for a face that carries a round body.
 ///
-/// The value is below any cosine, so that only the position of the center of the body decides whether its contact
-/// belongs to the face.
+/// The value is below any cosine, so that contacts in every direction belong to the face, provided that the center of
+/// the round body lies in front of the face.
 const ROUND: f64 = -2.0;
 
 /// Distance (m) from a face within which a corner or an arc counts as an end of the face.
 const AT_END: f64 = 1e-9;
 
 impl Solid {
-    /// Creates a solid whose whole boundary is tested exactly.
+    /// Creates a solid without rows of nodes along its faces.
     pub(crate) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
         Self {
             shape,
@@ -162,7 +162,8 @@ fn add(body: &mut Body<Planar>, nodes: Nodes<Planar>) -> usize {
 /// Length (m) of boundary that a contact without nodes represents, at full scale.
 pub(super) const TRIBUTARY: f64 = 0.01;
 
-/// Returns the node set that tests the boundary of a part exactly, with its tributary length scaled by `length`.
+/// Returns the node set for the whole boundary of a part: its corners and arcs, or the single node of a circle. The
+/// tributary length is [`TRIBUTARY`] scaled by `length`.
 pub(super) fn boundary(placed: &Placed<Planar>, length: f64) -> Nodes<Planar> {
     let Placed { surface, offset, rotation } = placed;
     let tributary_length = TRIBUTARY * length;

@@ -70,8 +70,8 @@ pub(super) fn assemble(
     })
 }
 
-/// Returns the contact laws of a stack, each at the index of its pair; the contact of a seat represents all seats that
-/// coincide in the model.
+/// Returns the contact laws of a stack, in the order of [`StackPair::ALL`]. The contact law of a seat is that of all
+/// seats that coincide in the model.
 pub(super) fn laws<S: Space<Real = f64>>(
     spec: &StackSpec,
     shown: Shown,

@@ -73,7 +73,8 @@ impl Lids {
 
     /// Returns the lid of a barrel with the given radius (m), as a guide between its rack and the barrel.
     ///
-    /// The rack is the first body of the link; `up` is the upward direction in its frame.
+    /// The first body of `link` is the rack, and the second is the barrel; `up` is the upward direction in the frame
+    /// of the rack.
     pub fn guide<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -91,8 +92,8 @@ impl Lids {
         }
     }
 
-    /// Returns the half-width (m) of the lid of a barrel with a radius (m), and its height (m) above the center of the
-    /// barrel.
+    /// Returns the half-width (m) of the lid over a barrel with the given radius (m), and the height (m) of the lid
+    /// above the center of the barrel.
     pub fn drawn(&self, radius: f64, scale: Similitude) -> [f64; 2] {
         [HALF_WIDTH * radius, radius + self.gap * scale.length]
     }

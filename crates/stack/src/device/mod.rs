@@ -34,7 +34,7 @@ pub use walking_stop::{Holds, WalkingStops};
 /// Declares the devices: for each, its table in `[stack]` with the help text, and the type that holds the table.
 macro_rules! devices {
     ($(#[doc = $help:literal] $name:ident: $type:ty),* $(,)?) => {
-        /// Settings of all devices of a stack, including those that are absent.
+        /// Settings of all devices of a stack, including devices that the stack does not have.
         #[derive(Clone, Debug, PartialEq)]
         pub struct Devices {
             $(#[doc = $help] pub $name: $type),*
@@ -76,7 +76,7 @@ macro_rules! devices {
                 Ok(())
             }
 
-            /// Returns the names of the tables of the devices that the stack does not have.
+            /// Returns the table names of all devices that the stack does not have.
             pub fn absent(&self) -> Vec<&'static str> {
                 let all = [$((stringify!($name), self.$name.is_on())),*];
                 all.into_iter().filter(|(_, on)| !on).map(|(name, _)| name).collect()
@@ -133,8 +133,8 @@ pub struct Words {
     /// Settings that represent a badly maintained or badly fitted device, to be applied [over](Setting::over) a
     /// candidate.
     pub degraded: &'static [Setting],
-    /// Settings, applied [over](Setting::over) a candidate, that leave the device without effect: out of reach, or as
-    /// slack or weak as possible.
+    /// Overrides, applied [over](Setting::over) a candidate, with which the device has no effect, because it is out of
+    /// reach, or as slack or weak as possible.
     ///
     /// The results are then bit-identical to results without the device, if the time step and its division in impacts
     /// are the same.

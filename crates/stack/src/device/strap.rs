@@ -2,7 +2,7 @@
 //!
 //! A strap over a barrel does not slip on the barrel. In the model, each strap is therefore attached where it leaves
 //! the barrel, at the ends of the horizontal diameter, and runs straight down to the rack from there. In the plane
-//! along the barrels, both runs coincide in one line through the middle of the barrel.
+//! along the barrels, both sides of the strap coincide in one line through the middle of the barrel.
 
 use barrelstack_dynamics::{BodyId, Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -129,8 +129,8 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
 }
 
 impl Straps {
-    /// Returns one strap that spans a vertical distance (m) on the stack as drawn, and its slack (m) after it is
-    /// tightened on the stack at rest.
+    /// Returns one strap, and its slack (m) after it is tightened on the stack at rest. `distance` (m) is the vertical
+    /// distance between the ends of the strap before the stack settles.
     ///
     /// The slack is the length of the strap minus the distance between its ends; it is negative under pretension.
     ///
@@ -164,7 +164,7 @@ impl Straps {
         Ok((strap, give))
     }
 
-    /// Installs the straps from the ground up, first the left strap of each pair.
+    /// Installs the straps from the ground up, and the left strap of each pair before the right one.
     ///
     /// # Errors
     /// If the pretension would stretch a strap by more than its whole length.
@@ -172,7 +172,7 @@ impl Straps {
         let Builder { spec, parts, bodies, scale, .. } = builder;
         let (scale, view) = (*scale, spec.view);
         let lowest = lowest(self.levels, spec.levels);
-        // Every strap is vertical on the stack as drawn.
+        // Every strap is vertical before the stack settles.
         let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64| {
             let apart = bodies[upper].pose.position - bodies[lower].pose.position;
             let name = format!("{}-{} {side}", parts[upper].name, parts[lower].name);

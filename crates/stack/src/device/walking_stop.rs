@@ -149,7 +149,8 @@ impl WalkingStops {
             for barrel in part.supports.clone() {
                 let below = &builder.parts[barrel];
                 let (name, size) = (below.name.clone(), below.size);
-                // A saddle acts at the center of its barrel, which may turn under it; a hook acts at the top.
+                // A saddle acts at the center of the barrel, because the barrel may turn under the saddle; a hook acts
+                // at the top of the barrel.
                 let (point, reach) = match spec.view {
                     View::Transverse => (Vec2::default(), 0.7 * size),
                     View::Longitudinal => {

@@ -15,7 +15,7 @@ use super::trail::Trail;
 /// A case that is ready to run.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// The scenario; its own motion is ignored.
+    /// The scenario; `ground` is used instead of its own motion.
     pub scenario: Arc<Scenario>,
     /// Ground motion, shared by all cases with the same motion and intensity.
     pub ground: Arc<Ground>,
@@ -153,8 +153,8 @@ impl CaseResult {
 
     /// Creates the result of a case whose stack falls under its own weight before it is shaken.
     ///
-    /// The first argument is the name and the level of the lowest unsupported body. The result is a collapse at time
-    /// zero of this level and all levels above; the barrels of these levels count as fallen. `barrels` lists all
+    /// The first argument is the name and the level of the lowest unsupported body. The result is a collapse, at time
+    /// zero, of this level and all levels above, and all barrels of these levels count as fallen. `barrels` lists all
     /// barrels of the stack, each with its name, its level, its height (m) above the floor, and its wine (m³). The
     /// height counts as the drop of the barrel.
     pub fn fallen_at_rest(

@@ -18,11 +18,11 @@ pub struct CaseColumn {
     pub role: Role,
     /// Description in a sentence.
     pub meaning: &'static str,
-    /// Returns the value of a case; `None` if the value does not apply or is unknown.
+    /// Returns the value of the column for a case; `None` if the value does not apply or is unknown.
     pub get: Get,
 }
 
-/// Function that returns a value of a case, by the type of the value.
+/// Function that returns the value of a column for a case; each variant is for one type of value.
 #[derive(Clone, Copy, Debug)]
 pub enum Get {
     /// An integer.
@@ -44,12 +44,12 @@ impl CaseColumn {
         ColumnSpec::new(self.name, self.unit, self.role, kind)
     }
 
-    /// Returns the value of a case.
+    /// Returns the value of this column for a case.
     pub fn of(&self, case: &CaseResult) -> Option<Value> {
         self.values(&mut std::iter::once(case)).get(0)
     }
 
-    /// Returns the values of all cases.
+    /// Returns the values of this column for all cases.
     fn values(&self, cases: &mut dyn Iterator<Item = &CaseResult>) -> Values {
         match self.get {
             Get::Integer(get) => {

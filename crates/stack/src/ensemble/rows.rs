@@ -13,7 +13,7 @@ use crate::ground::{Ground, GroundError, of_spec, scaled};
 use crate::pool;
 use crate::scenario::{MeasuredOn, MotionSource, MotionSpec, Scale, Scenario};
 
-/// Number of cases that a core takes at once, the same as in the first chunks of a study.
+/// Maximum number of cases that a core takes at once.
 const BATCH: usize = 64;
 
 /// Minimum number of batches per core, so that no core waits long for the last batch.

@@ -64,7 +64,7 @@ pub(super) fn run(
     results
 }
 
-/// Observer of a case: losses of seats and falls, stresses, forces between bodies, and barrel positions.
+/// Observer of a case, which records losses of seats and falls, stresses, forces between bodies, and barrel positions.
 struct Watch<'a> {
     fates: Fates,
     stresses: StressWatch,

@@ -35,7 +35,7 @@ impl Trail {
         }
     }
 
-    /// Returns the time (s) at which the next sample is due; infinity without barrels.
+    /// Returns the time (s) at which the next sample is due; infinity if there are no barrels.
     pub(super) fn due(&self) -> f64 {
         self.paths.first().map_or(f64::INFINITY, |path| path.len() as f64 / RATE)
     }

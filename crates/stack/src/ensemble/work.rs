@@ -67,7 +67,7 @@ impl Work {
 struct Clock {
     /// Number of threads that are doing this kind of work now.
     threads: AtomicI64,
-    /// Sum of all end times minus the sum of all start times (ns).
+    /// Sum of the times (ns) at which threads finished this work, minus the sum of the times at which threads began it.
     sum: AtomicI64,
 }
 
@@ -147,7 +147,7 @@ impl Share {
         self.0 = now;
     }
 
-    /// Ends the case after a simulated fraction, 0 to 1.
+    /// Ends the case, of which the fraction `share` (0 to 1) has been simulated.
     pub fn end(mut self, share: f64) {
         self.reached(share);
         if share < 0.99 {

@@ -8,15 +8,14 @@ use super::CUT;
 use crate::outcome::Outcome;
 use crate::watch::Ending;
 
-/// Limit of the energy residual divided by the energy that passed through the system. Above this limit, a run is
-/// invalid.
+/// Largest accepted ratio of the energy residual to the energy that passed through the system. A run with a larger
+/// ratio is invalid.
 ///
-/// This limit is a hundred times the ratio that leads to a warning, and two thousand times the ratio with an adequate
-/// time step.
+/// This is a hundred times the ratio that leads to a warning, and two thousand times the ratio with an adequate time
+/// step.
 const BOOKS_BROKEN: f64 = 0.1;
 
-/// Limit of the energy residual divided by the energy that passed through the system. Above this limit, a run has a
-/// warning.
+/// Ratio of the energy residual to the energy that passed through the system, above which a run has a warning.
 const BOOKS_OPEN: f64 = 1e-3;
 
 /// Totals of a run that reached its end.

@@ -204,8 +204,8 @@ impl Barrel {
         }
     }
 
-    /// Returns half of the distance (m) between the heads at which the interior has the nominal volume. If the interior
-    /// is too small even at the largest possible distance, returns half of the largest distance.
+    /// Returns half of the distance (m) between the heads, chosen so that the interior has the nominal volume. If the
+    /// interior is too small even at the largest possible distance, returns half of the largest distance.
     fn half_room(&self) -> f64 {
         let most = 0.5 * self.length - self.stave_thickness;
         let inner = |x: f64| (0.5 * self.diameter_at(x) - self.stave_thickness).max(0.0);
@@ -338,7 +338,7 @@ fn check(reader: &Reader<'_>, barrel: &Barrel) -> Result<(), ScenarioError> {
     let sections = barrel.head_diameter..=barrel.bilge_diameter;
     if !sections.contains(&barrel.section_diameter) {
         let message = format!(
-            "`{}` is {} m; a section lies between the head of {} m and the bilge of {} m",
+            "`{}` is {} m; it must lie between the head diameter of {} m and the bilge diameter of {} m",
             path("section_diameter"),
             barrel.section_diameter,
             barrel.head_diameter,
@@ -348,7 +348,7 @@ fn check(reader: &Reader<'_>, barrel: &Barrel) -> Result<(), ScenarioError> {
     }
     if barrel.mass < barrel.empty_mass {
         let message = format!(
-            "`{}` is {} kg, less than the wood of {} kg; lower `{}` too",
+            "`{}` is {} kg, less than the {} kg of the wood; lower `{}` too",
             path("mass"),
             barrel.mass,
             barrel.empty_mass,

@@ -98,7 +98,7 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
         && mass < stack.barrel.empty_mass
     {
         let message = format!(
-            "`{}` is {mass} kg, less than the wood of {} kg",
+            "`{}` is {mass} kg, less than the {} kg of the wood",
             reader.path_of("mass"),
             stack.barrel.empty_mass
         );

@@ -104,7 +104,7 @@ pub const BARRELS: &[CatalogBarrel] = &[
 pub struct Seat {
     /// Stiffness (N/m).
     pub stiffness: f64,
-    /// Ratio of the speeds after and before an impact of the mass `mass`.
+    /// Ratio of the speeds after and before the impact of a body with the mass `mass`.
     pub restitution: f64,
     /// Mass (kg) for which the restitution holds.
     pub mass: f64,

@@ -203,7 +203,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
     let ground = Ground::read(root.section("ground")?)?;
     let mut bodies: Vec<FreeBody> = Vec::new();
     let (mut names, mut nodes) = (BTreeSet::new(), 0.0);
-    // Names of the columns of bodies in tables, including the name of the columns of the ground.
+    // Column names of the bodies, and that of the ground, in tables.
     let mut columns = BTreeSet::from(["ground".to_owned()]);
     for reader in root.sections("body")? {
         if bodies.len() == MOST_BODIES {

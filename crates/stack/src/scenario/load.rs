@@ -41,7 +41,7 @@ pub struct Language {
     pub names: fn() -> Vec<&'static str>,
 }
 
-/// The file language of scenarios.
+/// Scenario files: their fields, and the built-in scenarios.
 pub(super) const SCENARIO: Language =
     Language { root: &root::ROOT, builtin: builtin::get, names: || builtin::names().collect() };
 
@@ -239,7 +239,7 @@ pub(super) fn unknown_builtin(field: &str, name: &str, language: &Language) -> P
     }
 }
 
-/// Returns the bytes of the file of a scenario or of a cellar.
+/// Reads the file of a scenario or of a cellar, and returns its bytes.
 ///
 /// # Errors
 /// If the file cannot be read.
@@ -350,7 +350,7 @@ fn parsed(sources: &Sources, file: usize) -> Result<Table, ScenarioError> {
     Ok(table)
 }
 
-/// Overlays the table of a file on the scenario that it extends.
+/// Overlays the table of a file on the tables of the scenarios that the file extends.
 pub(super) fn extend(
     sources: &mut Sources,
     table: Table,

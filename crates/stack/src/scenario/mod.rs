@@ -124,8 +124,8 @@ pub struct Scenario {
     written: Written,
 }
 
-/// Where the values of a scenario were written, so that errors can state their place; then warnings about the text of
-/// the scenario. Comparisons of scenarios ignore both.
+/// The sources and the table from which a scenario was read, so that errors can state the place of a value, followed by
+/// warnings about the text of the scenario. Comparisons of scenarios ignore both.
 #[derive(Clone, Default)]
 struct Written(Option<Arc<(tree::Sources, tree::Table)>>, Vec<String>);
 
@@ -245,8 +245,8 @@ impl Scenario {
 
     /// Returns the scenario without title and motion as a table under a key, for another file such as a study.
     ///
-    /// Runs end by the criterion `until`, because the criterion in the scenario was chosen for the motion of that
-    /// scenario.
+    /// In the table, `until` replaces all settings that end a run, because the settings of the scenario were chosen for
+    /// its own motion.
     pub fn to_toml_table(&self, key: &str, until: Until) -> String {
         let plain = |key: &str, value| tree::Entry {
             key: key.to_owned(),

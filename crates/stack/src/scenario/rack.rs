@@ -204,7 +204,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {
     }
     if rack.foot_height + rack.beam_height > rack.clearance {
         let message = format!(
-            "`{}` is {} m, but feet of {} m and a beam of {} m leave no room under the barrels",
+            "`{}` is {} m, but feet {} m high and a beam {} m high leave no room under the barrels",
             reader.path_of("clearance"),
             rack.clearance,
             rack.foot_height,

@@ -6,10 +6,10 @@
 use super::error::{Problem, ScenarioError};
 use super::tree::{Entry, Node, Origin, Sources, Table, Value};
 
-/// Table that formerly held the keys.
+/// Table that formerly held the keys in [`MOVED`].
 const FORMER: &str = "imperfections";
 
-/// Table that holds the keys now.
+/// Table that now holds the keys in [`MOVED`].
 const PRESENT: &str = "unknowns";
 
 /// Keys that moved from [`FORMER`] to [`PRESENT`] under the same name.

@@ -129,7 +129,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Shape, ScenarioError> {
             if 2.0 * *corner_radius >= width.min(*height) =>
         {
             let message = format!(
-                "`{}` of {corner_radius} m does not fit in {width} m by {height} m",
+                "`{}` of {corner_radius} m is too large for a rectangle of {width} m by {height} m",
                 reader.path_of("corner_radius")
             );
             return Err(reader.inconsistent("corner_radius", message));

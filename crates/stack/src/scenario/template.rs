@@ -192,8 +192,8 @@ impl Host {
         merge::node_at(&self.table, &path.split('.').collect::<Vec<_>>())
     }
 
-    /// Returns an error that is placed at the first of the given paths at which a value was written; at the whole file
-    /// if there is no such path.
+    /// Returns an error whose place is the first of the given paths at which a value was written. If none of the paths
+    /// has a value, the place is the whole file.
     pub fn error(&self, paths: &[&str], message: String) -> ScenarioError {
         let written = paths.iter().find_map(|path| self.node(path)).map(|node| node.origin);
         self.sources.error(written.unwrap_or(Origin::Whole(0)), Problem::Inconsistent { message })
@@ -233,7 +233,7 @@ impl Host {
 }
 
 impl Template {
-    /// Removes those of the given fields of a table that are inherited from an extended scenario.
+    /// Removes the given fields from a table, but only those that are inherited from an extended scenario.
     pub fn forget_inherited(&mut self, table: &str, fields: &[&str]) {
         let own = |origin: Origin| match origin {
             Origin::File { file, .. } | Origin::Whole(file) => file == 0,

@@ -22,8 +22,8 @@ pub(super) fn of(scenario: &Scenario) -> String {
 }
 
 impl Scenario {
-    /// Returns the scenario with the event of its record in the title, if the title is generated. Reads the file of the
-    /// record.
+    /// Returns the scenario with a title that names the event of its record. If the title was not generated, it is left
+    /// unchanged. The event is read from the file of the record.
     ///
     /// # Errors
     /// If the record cannot be read.

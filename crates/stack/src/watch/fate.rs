@@ -13,14 +13,14 @@ pub struct Thresholds {
     /// Displacement of a barrel from its position in the rack, in barrel radii, beyond which the barrel has left its
     /// seat.
     pub seat_loss_ratio: f64,
-    /// Drop (m) below its position at rest beyond which a body has fallen.
+    /// Drop (m) of a body below its position at rest, beyond which the body has fallen.
     pub fall_drop: f64,
     /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left its
     /// seat.
     pub rack_slide_ratio: f64,
-    /// Tilt (rad) of a rack relative to the rack below beyond which the rack has left its seat by rocking.
+    /// Tilt (rad) of a rack relative to the rack below, beyond which the rack has left its seat by rocking.
     pub rocking_angle: f64,
-    /// Tilt (rad) of the bottom rack beyond which the stack has overturned.
+    /// Tilt (rad) of the bottom rack, beyond which the stack has overturned.
     pub overturning_angle: f64,
 }
 
@@ -162,7 +162,7 @@ struct Followed<R: Real> {
     landed_at: R,
     /// Largest downward speed (m/s) between fall and landing.
     landing_speed: R,
-    /// Largest force (N) after its fall.
+    /// Largest force (N) on the body after its fall.
     fall_force: R,
     drop: R,
     peak_displacement: R,

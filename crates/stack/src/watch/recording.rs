@@ -142,7 +142,7 @@ impl Recording {
             + 2 * Joints::new(assembly).joints.len()
     }
 
-    /// Returns the channel with a name, in which blanks may replace underscores: `B4.1 displacement x`.
+    /// Returns the channel with the given name. Spaces in the name count as underscores, as in `B4.1 displacement x`.
     pub fn channel(&self, name: &str) -> Option<&Channel> {
         let name = column_name(name);
         self.channels.iter().find(|channel| channel.name == name)
@@ -268,7 +268,7 @@ impl Recording {
         }
     }
 
-    /// Stores the largest forces at the end of the run, and sorts the joints by support and bodies.
+    /// Stores the largest forces at the end of the run, and sorts the joints as [`Joints::listed`] does.
     pub(crate) fn finish(&mut self) {
         for (history, joint) in self.joints.iter_mut().zip(&self.forces.joints) {
             history.joint = joint.clone();

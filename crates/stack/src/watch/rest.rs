@@ -82,13 +82,13 @@ impl Ending {
 /// and approaches no other body also counts as at rest: it decelerates at about 0.2 m/s² and cannot reach any body.
 #[derive(Clone, Debug)]
 pub struct Rest<R: Real = f64> {
-    /// Time (s) from which the ground is still; infinite if the run ends by its duration only.
+    /// Time (s) from which the ground is still; infinite if the run does not end when all bodies are at rest.
     still_from: R,
-    /// Time (s) from which the ground is calm; infinite if the run ends by its duration only.
+    /// Time (s) from which the ground is calm; infinite if the run does not end when all bodies are at rest.
     calm_from: R,
     /// Largest kinetic energy, divided by the mass, with which a body counts as at rest (m²/s²).
     slow: R,
-    /// Duration (s) for which all bodies must be slow.
+    /// Duration (s) for which all bodies must be slow before they count as at rest.
     hold: R,
     bodies: Vec<Mover<R>>,
     /// Time (s) at which a body was last in motion.
@@ -144,7 +144,7 @@ impl Rest {
 /// Returns the times (s) from which a standing stack and a collapsed stack may be at rest.
 ///
 /// `end` is the end of the motion (s), and `calm` returns the time (s) from which the ground is calm. Both returned
-/// times are infinite if the run ends by its duration only.
+/// times are infinite for [`Until::Duration`].
 pub fn quiet_from(until: Until, end: f64, calm: impl FnOnce() -> f64) -> (f64, f64) {
     match until {
         Until::Rest => (end, calm()),
@@ -160,15 +160,15 @@ pub fn quiet_from(until: Until, end: f64, calm: impl FnOnce() -> f64) -> (f64, f
 pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
     let holding = laws.iter().map(|interface| match interface.friction {
         FrictionLaw::Coulomb { kinetic_coefficient, .. } => CALM_OF_FRICTION * kinetic_coefficient,
-        // Contacts without friction hold by the shape of their seats only, and contacts with regularized friction
-        // creep.
+        // Contacts without friction resist slip by the shape of their seats only, and contacts with regularized
+        // friction creep.
         FrictionLaw::Frictionless | FrictionLaw::Regularized { .. } => 0.0,
     });
     holding.fold(CALM, f64::min)
 }
 
 impl<R: Real> Rest<R> {
-    /// Observes an accepted state, given the lanes that have collapsed, and returns the lanes at rest.
+    /// Observes an accepted state and returns the lanes at rest. `collapsed` are the lanes with a collapsed stack.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn observe(&mut self, state: &State<Planar<R>>, collapsed: R::Mask) -> R::Mask {

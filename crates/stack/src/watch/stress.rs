@@ -63,11 +63,11 @@ pub struct StressEnvelope {
 /// Sum of the normal forces of all contacts of a body at one instant: the integral of the stress along its boundary.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TotalForce {
-    /// Sum at rest (N).
+    /// Sum of the normal forces at rest (N).
     pub at_rest: f64,
-    /// Largest sum until the first loss of seat (N).
+    /// Largest sum of the normal forces until the first loss of seat (N).
     pub peak: f64,
-    /// Largest sum over the whole run (N).
+    /// Largest sum of the normal forces over the whole run (N).
     pub peak_whole_run: f64,
 }
 
@@ -100,7 +100,8 @@ impl StressEnvelope {
         self.largest_over_rest(&self.peak)
     }
 
-    /// Returns the amplification over the whole run.
+    /// Returns the largest stress over the whole run, divided by the largest stress at rest; `None` without load at
+    /// rest.
     pub fn amplification_whole_run(&self) -> Option<f64> {
         self.largest_over_rest(&self.peak_whole_run)
     }
@@ -117,7 +118,7 @@ impl StressEnvelope {
         self.mean_over_rest(&self.peak)
     }
 
-    /// Returns the mean amplification over the whole run.
+    /// Returns the same as [`StressEnvelope::mean_amplification`], but for the whole run.
     pub fn mean_amplification_whole_run(&self) -> Option<f64> {
         self.mean_over_rest(&self.peak_whole_run)
     }

@@ -10,7 +10,7 @@ use barrelstack_dynamics::contact::restitution;
 use barrelstack_input::named;
 
 named! {
-    /// Unit for which contact constants are stated.
+    /// Unit for which contact constants are stated: a contact node, a meter of boundary, or a seat.
     pub enum Basis {
         /// Constants apply to one contact node, whatever the spacing of the nodes.
         Node = "node",
@@ -22,7 +22,8 @@ named! {
     }
 }
 
-/// Dissipation of a normal law whose restitution depends on the mass or the speed of the impact.
+/// Dissipation of a normal law, stated directly or by a restitution. The resulting restitution depends on the mass or
+/// the speed of the body that strikes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
     /// `c` of a linear law (N·s/m per node or seat, N·s/m² per length of boundary), or `d` (s/m) of a Hunt-Crossley
@@ -147,8 +148,8 @@ impl Interface {
         }
     }
 
-    /// Multiplies the damping of a linear law by a factor: the coefficient, or the damping ratio that gives the
-    /// restitution.
+    /// Multiplies the damping of a linear law by a factor. If a restitution is stated instead of the damping, it is
+    /// changed so that the damping ratio is multiplied by the factor.
     pub fn damp(&mut self, factor: f64) {
         let (damping, to_ratio, from_ratio): (_, DampingRatio, Restitution) = match &mut self.normal
         {

@@ -17,7 +17,7 @@ use super::{Basis, Damping, Friction, Interface, NormalLaw};
 /// (2008).
 const NODE: (f64, f64) = (980_000.0, 2200.0);
 
-/// Default constants of a pair of a stack, used for constants that the scenario leaves out.
+/// Default contact constants of two kinds of bodies of a stack, for constants that the scenario leaves out.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scenario) struct PairDefaults {
     /// Constants of the seat, if the pair is a seat of a rack.
@@ -109,8 +109,8 @@ pub(in crate::scenario) fn read(
     Ok(Interface { basis, normal, friction })
 }
 
-/// Dimension of the damping of a normal law; then the name and the dimension of its field for the reference mass or
-/// speed, which belongs to a stated restitution.
+/// Dimension of the damping of a normal law, followed by the name and the dimension of the field that states the
+/// reference mass or speed of a restitution.
 type DampingUnits = (Dimension, &'static str, Dimension);
 
 const HUNT_CROSSLEY: DampingUnits =
@@ -255,7 +255,7 @@ fn missing_problem(reader: &Reader<'_>, name: &str, dimension: Dimension) -> Pro
     Problem::Missing { field: name.to_owned(), section: reader.label(), example }
 }
 
-/// Writes the contact law of a pair of a stack as a table.
+/// Writes a contact law of a stack as a table.
 pub(in crate::scenario) fn write(section: &'static Section, interface: &Interface) -> Table {
     let mut writer = Writer::variant(section, law_of(&interface.normal));
     write_fields(&mut writer, interface);

@@ -14,7 +14,7 @@ use super::places::{on_nodes, on_surface};
 use super::{BoundaryPoint, Cells, StressEnvelope, Stresses};
 use crate::assemble::{Assembly, PartKind};
 
-/// Range of contact points for which a contact element loads the same cells of one of its bodies, and the largest force
+/// Range of contact points for which a contact element loads the same cells of a body. Also contains the largest force
 /// of the element since its contact point entered this range.
 ///
 /// As long as the contact point stays in this range, only the largest force matters. In most steps, most contacts
@@ -31,10 +31,10 @@ pub(super) struct Bounds<R: Real = f64> {
     most: R,
 }
 
-/// Kind of the range of points over which a contact loads the same cells.
+/// Shape of a range of contact points in which a contact loads the same cells.
 #[derive(Clone, Copy, Debug)]
 enum CellRange {
-    /// All points of a rack: a contact element keeps the place of its first contact.
+    /// All points of a rack: a contact element keeps the cells of its first contact.
     Everywhere,
     /// Points between two directions, counterclockwise.
     Wedge,
@@ -42,12 +42,12 @@ enum CellRange {
     Strip,
 }
 
-/// A body of a contact pair for which a stress envelope is recorded.
+/// One of the two bodies of a contact pair, for which a stress envelope is recorded.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     body: BodyId,
     range: CellRange,
-    /// `true` if the body is the target of the pair; contact points are stated in the frame of the target's surface.
+    /// `true` if the body is the target of the pair.
     is_target: bool,
 }
 
@@ -70,7 +70,8 @@ struct Pair<R: Real> {
 }
 
 impl<R: Real> Pair<R> {
-    /// Transforms a contact point (m) from the frame of the target's surface to the frame of the body of a side.
+    /// Transforms a contact point (m) from the frame of the target's surface to the frame of the body that `side`
+    /// selects.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn in_body(
@@ -120,7 +121,7 @@ impl<R: Real> Bounds<R> {
 /// Place of a contact element on one of its bodies.
 #[derive(Clone, Debug, Default)]
 struct Pressed {
-    /// Index of the envelope of the body.
+    /// Index of the stress envelope of the body.
     on: usize,
     /// Tributary length (m) of the element.
     length: f64,
@@ -134,7 +135,7 @@ struct Lane {
     stresses: Stresses,
     /// The place of every element, in the order of [`StressWatch::bounds`].
     pressed: Vec<Pressed>,
-    /// Index of the point of a contact on a rack, by pair, contact element and body.
+    /// Index of the envelope point that a contact on a rack loads, by pair, contact element and body.
     on_racks: BTreeMap<(usize, u32, BodyId), usize>,
 }
 
@@ -248,7 +249,7 @@ impl StressWatch {
     }
 }
 
-/// Creates the envelopes of all barrels and racks, without load.
+/// Creates the stress envelopes of all barrels and racks, with zero stresses.
 fn empty(assembly: &Assembly) -> Stresses {
     let mut envelopes: Vec<StressEnvelope> = Vec::new();
     let mut of_body = vec![None; assembly.parts.len()];
@@ -279,7 +280,7 @@ fn empty(assembly: &Assembly) -> Stresses {
 }
 
 impl<R: Real> StressWatch<R> {
-    /// Creates an observer without runs.
+    /// Creates an observer that observes no run yet.
     pub(crate) fn nothing() -> Self {
         Self {
             lanes: vec![Lane::default(); R::LANES],
@@ -462,7 +463,7 @@ impl Lane {
 }
 
 impl Stresses {
-    /// Raises an envelope to the stress of a contact with a force (N).
+    /// Raises an envelope to the stress that a contact with the given force (N) causes.
     fn raise(&mut self, pressed: &Pressed, force: f64) {
         if force <= 0.0 {
             return;
@@ -478,7 +479,7 @@ impl Stresses {
 }
 
 impl StressEnvelope {
-    /// Adds an unloaded point with a tributary length (m).
+    /// Adds a point with the given tributary length (m) and zero stress.
     fn push(&mut self, point: BoundaryPoint, length: f64) {
         self.points.push(point);
         self.lengths.push(length);

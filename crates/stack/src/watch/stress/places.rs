@@ -28,7 +28,7 @@ fn empty(body: BodyId, points: Vec<BoundaryPoint>, closed: bool, cells: Cells) -
     }
 }
 
-/// Returns an unloaded envelope with cells along the surface of a barrel.
+/// Returns a stress envelope with cells along the surface of a barrel and with zero stresses.
 pub(super) fn on_surface(body: BodyId, shape: &Shape) -> Option<StressEnvelope> {
     match shape {
         Shape::Circle(circle) => {
@@ -69,7 +69,7 @@ pub(super) fn on_surface(body: BodyId, shape: &Shape) -> Option<StressEnvelope> 
     }
 }
 
-/// Returns an unloaded envelope with one point for every fixed node of a rack.
+/// Returns a stress envelope with one point for every fixed node of a rack and with zero stresses.
 pub(super) fn on_nodes(body: BodyId, sets: &[Nodes<Planar>]) -> StressEnvelope {
     let nodes = || {
         sets.iter().filter_map(|set| match set {
