@@ -364,7 +364,7 @@ fn contenders(candidates: &[Candidate], open: &[usize], weights: &[f64]) -> Vec<
     kept.into_iter().map(|at| open[at]).collect()
 }
 
-/// Returns, for each kind of protection, the two with which the fewest barrels fall.
+/// Returns, for each kind of protection, the two protections with which the fewest barrels fall.
 fn best_of_kinds<'a>(
     candidates: &'a [Candidate],
     open: &[usize],

@@ -154,7 +154,7 @@ pub struct Cases {
     pub title: String,
     /// Description of the stacks, without the properties that a factor varies; `None` for scenarios without a stack.
     pub stacks: Option<String>,
-    /// Names of the motions, to which [`JudgedCase::record`] refers.
+    /// Names of the motions; [`JudgedCase::record`] is an index into this list.
     pub records: Vec<String>,
     /// Names of the modes of collapse, in the order of first occurrence.
     pub modes: Vec<String>,
@@ -162,8 +162,8 @@ pub struct Cases {
     pub measures: Vec<Measure>,
     /// Index of the measure of the study in `measures`.
     pub main: usize,
-    /// `true` if every case was scaled to a requested level of the study's intensity measure, so that each level has a
-    /// raw fraction of collapse.
+    /// `true` if every motion was scaled to a requested level of the study's intensity measure. The share of cases that
+    /// collapse can then be counted at each level.
     pub leveled: bool,
     /// `true` for an incremental dynamic analysis, in which each level depends on the results of earlier runs.
     pub hunted: bool,
@@ -171,7 +171,7 @@ pub struct Cases {
     pub sampled: bool,
     /// Names of the factors whose values are drawn at random, so that even cases of the same motion differ in them.
     pub drawn: Vec<String>,
-    /// Numbers of cases by how they ended.
+    /// Numbers of cases that were followed until nothing moved, and of cases that were stopped earlier.
     pub endings: Endings,
     /// All cases. They are reference-counted, since there may be a million of them, and subsets share them.
     pub all: Vec<Arc<JudgedCase>>,
@@ -416,7 +416,8 @@ impl Cases {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
-    /// Returns the phrase for the curves in a sentence: "motions", or a longer phrase if a motion has several curves.
+    /// Returns the noun that sentences use for the curves: "motions" if each motion has a single curve, otherwise a
+    /// longer phrase.
     pub fn curves_are(&self) -> &'static str {
         if self.curves() == self.records.len() {
             "motions"

@@ -180,11 +180,11 @@ impl Runs {
         Estimate { mean, low: scale * low, high: scale * high }
     }
 
-    /// Estimates by how much a quantity is smaller than in the runs `other` under the same motions.
+    /// Estimates by how much a quantity is smaller than in the runs `other`, under the same motions.
     ///
-    /// Returns the mean of the differences and its 95 % interval ([`mean_difference`]). The interval is
-    /// widened for the number of tries, since the best of them is reported. `most` is the largest possible
-    /// value in one run. Returns `None` if fewer than two motions are common to both.
+    /// Returns the mean of the differences and its 95 % interval ([`mean_difference`]). The interval is widened so that
+    /// it holds for `tries` comparisons simultaneously. `most` is the largest possible value of the quantity in one run.
+    /// Returns `None` if fewer than two motions occur in both sets of runs.
     pub(super) fn less_than(
         &self,
         other: &Self,
@@ -331,7 +331,7 @@ mod tests {
         let hazard = Hazard::new(&rows).unwrap();
         let levels = [0.1, 0.2, 0.4];
         let found = weights(&levels, Some(&hazard));
-        // Every exceedance of a level well above the lowest counts once.
+        // Shaking above the lowest level counts fully. Below it, the effect decreases to zero at half of that level.
         let above: f64 = found.iter().sum();
         let exact = hazard.expected(1.0, |x| {
             if x >= 0.1 { 1.0 } else { (x / 0.05).ln().max(0.0) / 2.0_f64.ln() }

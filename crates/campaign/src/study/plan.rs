@@ -94,7 +94,7 @@ impl Chunks {
             return Self::Even { count, sizes };
         }
         let mut chunks: Vec<Vec<u32>> = Vec::new();
-        // Chunk of each kind that is not yet full.
+        // For each kind of model, the chunk that is not yet full.
         let mut open: HashMap<String, usize> = HashMap::new();
         for number in 0..u32::try_from(count).unwrap_or(u32::MAX) {
             let kind = study.structure(&study.cases.case(study, u64::from(number)));

@@ -105,16 +105,15 @@ fn wine_lost(case: &JudgedCase) -> f64 {
     if case.wine > 0.0 { lost / case.wine } else { 0.0 }
 }
 
-/// Largest variance of a loss ratio that is written to a file, as a share of m (1 − m). This product is the
-/// largest possible variance of a ratio between 0 and 1 with the mean m.
+/// Maximum variance of a loss ratio in an exported file, as a share of m (1 − m), where m is the mean loss ratio. The
+/// variance of a ratio between 0 and 1 cannot exceed m (1 − m).
 ///
-/// `OpenQuake` draws ratios from a beta distribution, whose variance must be below m (1 − m). `OpenQuake`
-/// interpolates the mean and the coefficient of variation separately between two levels, so that a margin is
-/// needed.
+/// `OpenQuake` draws ratios from a beta distribution, whose variance must be below m (1 − m). Between two levels,
+/// `OpenQuake` interpolates the mean and the coefficient of variation separately, so that a margin is needed.
 const MOST_SCATTER: f64 = 0.99;
 
-/// Largest variance that interpolation between two written levels may give, as a share of m (1 − m), where m is the
-/// mean.
+/// Maximum variance of a loss ratio that is interpolated between two exported levels, as a share of m (1 − m), where m
+/// is the interpolated mean.
 const MOST_BETWEEN: f64 = 0.999;
 
 /// Maximum relative and absolute difference between two interpolated means: the mean that `OpenQuake` interpolates

@@ -10,8 +10,8 @@ use crate::study::distribution::Distribution;
 use crate::study::setting::{Domain, Setting};
 use crate::study::{Factor, Variation, rows};
 
-/// Probability of the quantile that is tested as the low end of a distribution. The high end has the
-/// probability 1 minus this value.
+/// Cumulative probability of the lowest value at which a continuous distribution is tested before any run. The highest
+/// tested value has the cumulative probability 1 − `LOW`.
 pub(super) const LOW: f64 = 1e-6;
 
 /// Returns an error if a new factor has the same column as another factor, or sets the same field.
@@ -40,7 +40,8 @@ pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Optio
     None
 }
 
-/// Remaining capacity for values of factors. It limits memory and work before any value is tested.
+/// Number of factor values and of cases that may still be added to a study. These limits are checked before any value
+/// is tested, so that a huge study takes neither memory nor time.
 #[derive(Debug)]
 pub(super) struct Room {
     /// Number of values that may still be listed.
