@@ -253,7 +253,7 @@ pub enum ProtectError {
         /// Intensity measure of the hazard curve.
         measure: String,
     },
-    /// The scenario with changes cannot be read.
+    /// The scenario is not valid after the changes of a protection.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// The motion of the scenario cannot be read.

@@ -219,7 +219,8 @@ pub(super) struct Reading {
     rows: usize,
     /// Number of rows read so far that are independent samples; each sample is a separate curve.
     own: usize,
-    /// Number of quantities that a Saltelli design exchanges between the two samples of a block; 0 for other designs.
+    /// Number of varied quantities of a Saltelli design; 0 for other designs. A block of the design has two cases more than
+    /// this number.
     varied: usize,
 }
 
@@ -410,8 +411,7 @@ impl Cases {
         self.all.iter().map(|case| case.wine).fold(0.0, f64::max)
     }
 
-    /// Returns the number of curves. There is one curve for each combination of a motion with values of those factors
-    /// that are not drawn for each case.
+    /// Returns the number of curves ([`JudgedCase::curve`]).
     pub fn curves(&self) -> usize {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }

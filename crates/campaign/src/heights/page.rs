@@ -18,8 +18,8 @@ use crate::scenario::title::{counted, number};
 /// Conditions for the rating "low": the maximum share of stacks that collapse, and the maximum upper bound of the
 /// probability of collapse.
 ///
-/// A stack whose probability of collapse exceeds the second number is rated low in at most one of 20 studies,
-/// for any number of motions.
+/// The upper bound holds with 95 % confidence. A stack whose probability of collapse exceeds the second number is
+/// therefore rated low in at most one of 20 studies, however many motions are run.
 const LOW: (f64, f64) = (0.05, 0.12);
 
 /// Maximum share of stacks that collapse for the rating "medium".

@@ -61,7 +61,7 @@ pub(super) struct Over {
 /// Mean of one quantity, with its interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// Mean over all motions, and weighted mean over the levels of shaking.
+    /// Mean over all motions. For each motion, the results at the levels of shaking are weighted and added.
     pub mean: f64,
     /// Lower end of the 95 % interval, clustered by motion.
     pub low: f64,
@@ -106,7 +106,7 @@ impl Runs {
         }
     }
 
-    /// Returns the effect of the uncertain constants, over the weighted levels (m/s).
+    /// Returns the effect of the uncertain constants. The results at the levels (m/s) are weighted and added.
     ///
     /// The regression gives the share of collapses at each level. The number of barrels that fall in a collapse does
     /// not depend on the constants: it is the mean over all collapses at that level or, if nothing collapses there,
@@ -143,8 +143,8 @@ impl Runs {
         Over { range: Some([low, high]), fallen }
     }
 
-    /// Returns the mean of a quantity for each motion, over the weighted levels. Motions that lack a run at
-    /// some level are left out.
+    /// Returns a quantity for each motion: its means over the runs at each level are weighted and added. Motions that
+    /// lack a run at some level are left out.
     fn by_motion(&self, quantity: Quantity, weights: &[f64]) -> BTreeMap<&str, f64> {
         let weighted = |levels: &Vec<Vec<Outcome>>| {
             let mean = |runs: &Vec<Outcome>| {
@@ -183,8 +183,8 @@ impl Runs {
     /// Estimates by how much a quantity is smaller than in the runs `other`, under the same motions.
     ///
     /// Returns the mean of the differences and its 95 % interval ([`mean_difference`]). The interval is widened so that
-    /// it holds for `tries` comparisons simultaneously. `most` is the largest possible value of the quantity in one run.
-    /// Returns `None` if fewer than two motions occur in both sets of runs.
+    /// it holds for `tries` comparisons simultaneously. `most` is the largest possible value of the quantity in one
+    /// run. Returns `None` if fewer than two motions occur in both sets of runs.
     pub(super) fn less_than(
         &self,
         other: &Self,

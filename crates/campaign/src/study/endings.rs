@@ -19,8 +19,8 @@ use crate::watch::{Ending, after_collapse};
 pub struct Endings {
     /// Number of all cases with a verdict.
     pub judged: u64,
-    /// Number of cases that were simulated until nothing moved. By then the motion of the ground had ended or, after a
-    /// collapse, its acceleration stayed below 0.02 g.
+    /// Number of cases that were simulated until nothing moved. By then the ground was still; after a
+    /// collapse, an acceleration of the ground of at most 0.02 g was allowed.
     ///
     /// Includes cases whose stack fell under its own weight, before any shaking.
     pub followed: u64,

@@ -432,8 +432,8 @@ fn read_design(
         DesignKind::FullFactorial => {
             if let Some(factor) = drawn {
                 return refuse(&format!(
-                    "a full factorial design combines listed values, but `{}` has a distribution: list its `values`, or use \
-                     a sampled design such as \"sobol\"",
+                    "a full factorial design combines listed values, but `{}` has a distribution: list its `values`, or \
+                     use a sampled design such as \"sobol\"",
                     factor.name
                 ));
             }
@@ -508,7 +508,9 @@ fn read_design(
         DesignKind::Ida => Design::Ida(read_hunt(&reader, intensity.as_ref())?),
     };
     if drawn_levels && matches!(kind, DesignKind::FullFactorial | DesignKind::OneAtATime) {
-        return refuse("this design needs a list of levels, but [intensity] has a distribution: give it `levels` or a `range`");
+        return refuse(
+            "this design needs a list of levels, but [intensity] has a distribution: give it `levels` or a `range`",
+        );
     }
     reader.finish();
     Ok((design, chunk, intensity))

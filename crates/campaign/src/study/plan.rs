@@ -19,7 +19,7 @@ pub struct Chunk {
     pub last: u64,
 }
 
-/// Sizes of chunks: as the study states, or 64 cases, doubled after every 512 chunks.
+/// Sizes of chunks: the size that the study states or, by default, 64 cases, doubled after every 512 chunks.
 ///
 /// Chunks are small enough that little work is lost at an interruption and that many processes can work at
 /// once. They are large enough that a study of a million cases has only about 2,500 files. In a study of a

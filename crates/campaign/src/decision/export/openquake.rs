@@ -258,7 +258,7 @@ pub(super) fn vulnerabilities(
 
 /// Returns an exposure template with one stack at 0° E, 0° N, and the taxonomy mapping of that stack.
 ///
-/// The contents of the stack are its wine (m³), and its nonstructural value is its number of barrels.
+/// In the template, `contents` is the volume of wine in the stack (m³), and `nonstructural` is the number of barrels.
 pub(super) fn exposure(
     decision: &Decision,
     asset: &str,
