@@ -219,8 +219,8 @@ pub(super) struct Reading {
     rows: usize,
     /// Number of rows read so far that are independent samples; each sample is a separate curve.
     own: usize,
-    /// Number of varied quantities of a Saltelli design; 0 for other designs. A block of the design has two cases more than
-    /// this number.
+    /// Number of varied quantities of a Saltelli design; 0 for other designs. A block of the design has two cases more
+    /// than this number.
     varied: usize,
 }
 
