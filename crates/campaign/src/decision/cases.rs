@@ -141,13 +141,14 @@ impl JudgedCase {
         u32::try_from(self.falls.len()).unwrap_or(u32::MAX)
     }
 
-    /// Returns the share of the barrels of the stack that fell; 0 if it has none.
+    /// Returns the number of fallen barrels divided by the number of barrels in the stack; 0 for a stack without
+    /// barrels.
     pub fn fallen_share(&self) -> f64 {
         f64::from(self.fallen()) / f64::from(self.barrels.max(1))
     }
 }
 
-/// Cases of a study that have a verdict, with the names, measures and settings that they share.
+/// Cases of a study that have a verdict, with the names, measures and settings that all cases share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cases {
     /// Title of the study.

@@ -139,8 +139,8 @@ impl LimitCurve {
         })
     }
 
-    /// `true` if the fraction of failures decreases significantly in some range of intensity, which no fragility curve
-    /// can describe.
+    /// `true` if the fraction of failures decreases significantly in some range of intensity. No fragility curve can
+    /// describe such a decrease.
     pub fn violates_order(&self) -> bool {
         self.monotony.p < 0.05
     }
@@ -217,8 +217,8 @@ fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> 
         .collect()
 }
 
-/// Counts the hunts of an incremental dynamic analysis at eight levels. At each level, only those hunts are counted
-/// that show whether the stack fails there.
+/// Counts the hunts of an incremental dynamic analysis at eight levels. At each level, a hunt is counted only if it
+/// shows whether the stack fails at this level.
 fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     let bounds: Vec<(f64, f64)> = evidence.iter().map(|item| item.capacity.bounds()).collect();
     let ends = || bounds.iter().flat_map(|(low, high)| [*low, *high]);

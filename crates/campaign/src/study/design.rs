@@ -104,13 +104,13 @@ pub(super) struct PlannedCase {
 pub(super) enum Cases {
     /// Every combination. The motion varies slowest, then the factors, and the level varies fastest.
     Crossed,
-    /// Cases with the base values or with a single change of them. The motion varies slowest, then the draw, then the
-    /// level, and the change varies fastest.
+    /// Cases with the base values, and cases with a single change of the base values. The motion varies slowest, then
+    /// the draw, then the level, and the change varies fastest.
     OneAtATime {
         /// Changes, each given by the index of a factor and the new value of that factor.
         changes: Vec<(usize, Setting)>,
-        /// Number of times that all other factors are drawn for each motion; all changes and levels use the same
-        /// draws.
+        /// Number of times that the factors with distributions are drawn for each motion; all changes and levels use
+        /// the same draws.
         draws: u64,
     },
     /// Points of the unit cube, whose axes are the motion, the level and the factors.
@@ -126,8 +126,8 @@ pub(super) enum Sampling {
     LatinHypercube(Vec<Vec<u32>>),
     /// Sobol' sequence, with one dimension for each axis.
     Sobol(Vec<Axis>),
-    /// Saltelli blocks: two dimensions of the Sobol' sequence for each axis, and the indices of the axes that
-    /// are exchanged.
+    /// Saltelli blocks: two dimensions of the Sobol' sequence for each axis, and the indices of the axes whose values
+    /// are exchanged between the two samples of a block.
     Saltelli { axes: Vec<[Axis; 2]>, exchanged: Vec<usize> },
 }
 

@@ -69,8 +69,8 @@ described! {
 }
 
 impl StopRule {
-    /// `true` if the cases counted in `tally` satisfy the rule; the counted cases must be all cases up to the
-    /// end of some chunk.
+    /// `true` if the cases counted in `tally` satisfy the rule. `tally` must count all cases from the first one to
+    /// the end of a chunk.
     pub(super) fn met(&self, tally: Tally) -> bool {
         let half = tally.collapse().map(|(_, [low, high])| 0.5 * (high - low));
         tally.cases >= u64::from(self.least) && half.is_some_and(|half| half <= self.half_width)

@@ -49,8 +49,8 @@ fn numbers(values: impl IntoIterator<Item = f64>) -> String {
 
 const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<nrml xmlns=\"http://openquake.org/xmlns/nrml/0.5\">\n";
 
-/// Returns the mean and the standard deviation of a lognormal capacity, by which `OpenQuake` describes a
-/// fragility curve.
+/// Returns the mean and the standard deviation of a lognormal capacity. `OpenQuake` describes a fragility curve by
+/// these two numbers.
 fn moments(curve: &Lognormal) -> (f64, f64) {
     let variance = curve.dispersion * curve.dispersion;
     let mean = curve.median * libm::exp(0.5 * variance);

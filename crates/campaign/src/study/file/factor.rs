@@ -40,8 +40,8 @@ pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Optio
     None
 }
 
-/// Number of factor values and of cases that may still be added to a study. These limits are checked before any value
-/// is tested, so that a huge study takes neither memory nor time.
+/// Limits on the number of factor values and on the number of cases of a study. They are checked before any value is
+/// tested, so that a study that is too large takes neither memory nor time.
 #[derive(Debug)]
 pub(super) struct Room {
     /// Number of values that may still be listed.
@@ -54,13 +54,13 @@ pub(super) struct Room {
 const MOST_VALUES: usize = 20_000;
 
 impl Room {
-    /// Creates the capacity for a number of motions. `most` is the maximum number of cases; `None` if the
+    /// Creates the limits for a study with a number of motions. `most` is the maximum number of cases; `None` if the
     /// design does not combine all values.
     pub(super) fn new(motions: usize, most: Option<u64>) -> Self {
         Self { values: MOST_VALUES, cases: most.map(|most| (motions as u64, most)) }
     }
 
-    /// Subtracts the values of a factor from the capacity; returns an error if they exceed it.
+    /// Counts the values of a factor toward the limits; returns an error if a limit is exceeded.
     fn take(&mut self, reader: &Reader<'_>, values: &[Setting]) -> Result<(), ScenarioError> {
         let key = if reader.has("range") { "range" } else { "values" };
         let Some(left) = self.values.checked_sub(values.len()) else {
@@ -178,8 +178,7 @@ fn domain_of(
     })
 }
 
-/// Returns the first value that a range or a distribution states, which determines the dimension of the
-/// factor.
+/// Returns the first value that a range or a distribution states. This value determines the dimension of the factor.
 fn first_of(section: &Reader<'_>) -> Result<Option<Node>, ScenarioError> {
     match ["from", "mean", "median", "values"].into_iter().find(|key| section.has(key)) {
         Some("values") => Ok(section.nodes("values")?.and_then(|nodes| nodes.first().cloned())),
