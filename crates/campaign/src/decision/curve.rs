@@ -124,7 +124,7 @@ impl LimitCurve {
         }
     }
 
-    /// Returns two standard errors: that of ln(median) and that of ln(dispersion).
+    /// Returns two standard errors: that of `ln(median)` and that of `ln(dispersion)`.
     ///
     /// With several records, the standard errors are clustered by record. With one record, the cases are
     /// taken as independent.

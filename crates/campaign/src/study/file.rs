@@ -432,8 +432,8 @@ fn read_design(
         DesignKind::FullFactorial => {
             if let Some(factor) = drawn {
                 return refuse(&format!(
-                    "a full factorial design combines listed values, but `{}` has a distribution: list its `values`, or \
-                     use a sampled design such as \"sobol\"",
+                    "a full factorial design combines listed values, but `{}` has a distribution: list its `values`, \
+                     or use a sampled design such as \"sobol\"",
                     factor.name
                 ));
             }
