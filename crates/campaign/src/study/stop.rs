@@ -116,8 +116,8 @@ mod tests {
                 // deviation of 0.5 %; without a stopping rule, Wilson's interval covers some probabilities in only 93 %
                 // of the studies.
                 assert!(covered > 0.93, "{probability} {half_width} {covered}");
-                // Measured: the mean share is too low by at most 0.0059, at a half-width of 0.05, since a study with few
-                // collapses stops sooner.
+                // Measured: the mean share is too low by at most 0.0059, at a half-width of 0.05, since a study with
+                // few collapses stops sooner.
                 assert!((share - probability).abs() < 0.2 * half_width, "{probability} {share}");
             }
         }
