@@ -253,7 +253,7 @@ pub enum ProtectError {
         /// Intensity measure of the hazard curve.
         measure: String,
     },
-    /// The scenario with changes cannot be read.
+    /// The scenario is not valid after the changes of a protection.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// The motion of the scenario cannot be read.
@@ -364,7 +364,7 @@ fn contenders(candidates: &[Candidate], open: &[usize], weights: &[f64]) -> Vec<
     kept.into_iter().map(|at| open[at]).collect()
 }
 
-/// Returns, for each kind of protection, the two with which the fewest barrels fall.
+/// Returns, for each kind of protection, the two protections with which the fewest barrels fall.
 fn best_of_kinds<'a>(
     candidates: &'a [Candidate],
     open: &[usize],

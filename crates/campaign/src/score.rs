@@ -163,7 +163,7 @@ fn whole(velocity: f64) -> u32 {
 pub struct Sheet {
     /// The scored scenario, with the number of levels that the protocol requires.
     pub scenario: Scenario,
-    /// Number of levels that the scenario states, which the protocol replaces by its own.
+    /// Number of levels that the scenario states. The scored stack has the number of levels of the protocol instead.
     pub stated_levels: u32,
     /// Protocol of the score.
     pub protocol: Protocol,
@@ -230,7 +230,7 @@ pub enum ScoreError {
     State {
         /// Name of the state.
         state: String,
-        /// Reason.
+        /// Reason why the state cannot be applied.
         #[source]
         source: ScenarioError,
     },
@@ -253,7 +253,7 @@ pub enum ScoreError {
         state: String,
         /// Direction of shaking, in words.
         direction: &'static str,
-        /// Reason.
+        /// Reason why no curve could be fitted.
         #[source]
         source: FitError,
     },

@@ -88,7 +88,7 @@ use setting::Setting;
 /// ```
 #[derive(Debug)]
 pub struct Study {
-    /// Title: one line.
+    /// Title, in one line.
     pub title: String,
     /// Seed of all random draws.
     pub seed: u64,

@@ -72,7 +72,7 @@ impl Drawn {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sample {
     constants: Vec<Drawn>,
-    /// Names of the motions, to which the runs refer.
+    /// Names of the motions; each run refers to its motion by the index in this list.
     motions: Vec<String>,
     runs: Vec<Shaken>,
     seed: u64,

@@ -7,8 +7,8 @@ use std::fmt::Write as _;
 
 use crate::scenario::{Scenario, Scene, Setting};
 
-/// Interfaces of seats, each with the interface of the same materials for bodies that have fallen; `None` if there is
-/// no such interface.
+/// Interfaces of seats. Each is paired with the interface of the same materials that applies to fallen bodies, if there
+/// is one.
 const SEATS: [(&str, Option<&str>); 3] = [
     ("rack-ground", Some("fallen-rack-ground")),
     ("barrel-rack", Some("fallen-barrel-rack")),

@@ -155,7 +155,7 @@ fn a_process_whose_study_grew_meanwhile_ends_and_says_so() {
     let options = RunOptions { threads: std::num::NonZero::new(1), ..RunOptions::default() };
     let error = study.run(&out, &options, &report).unwrap_err().to_string();
     assert!(
-        error.contains("has been taken over by a larger form of the study since this run began"),
+        error.contains("holds a larger version of the study, which was started after this run"),
         "{error}"
     );
 }

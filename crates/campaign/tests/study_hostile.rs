@@ -296,7 +296,7 @@ fn a_design_of_values_refuses_a_distribution() {
         Study::parse("case.toml", &whole([HEAD, SCENE, &drawn, INTENSITY, DESIGN])).unwrap_err();
     assert!(
         error.to_string().contains(
-            "crosses listed values, but `interface.rack-ground.friction.coefficient` has a distribution"
+            "combines listed values, but `interface.rack-ground.friction.coefficient` has a distribution"
         ),
         "{error}"
     );

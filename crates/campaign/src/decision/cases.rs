@@ -141,20 +141,21 @@ impl JudgedCase {
         u32::try_from(self.falls.len()).unwrap_or(u32::MAX)
     }
 
-    /// Returns the share of the barrels of the stack that fell; 0 if it has none.
+    /// Returns the number of fallen barrels divided by the number of barrels in the stack; 0 for a stack without
+    /// barrels.
     pub fn fallen_share(&self) -> f64 {
         f64::from(self.fallen()) / f64::from(self.barrels.max(1))
     }
 }
 
-/// Cases of a study that have a verdict, with the names, measures and settings that they share.
+/// Cases of a study that have a verdict, with the names, measures and settings that all cases share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cases {
     /// Title of the study.
     pub title: String,
     /// Description of the stacks, without the properties that a factor varies; `None` for scenarios without a stack.
     pub stacks: Option<String>,
-    /// Names of the motions, to which [`JudgedCase::record`] refers.
+    /// Names of the motions; [`JudgedCase::record`] is an index into this list.
     pub records: Vec<String>,
     /// Names of the modes of collapse, in the order of first occurrence.
     pub modes: Vec<String>,
@@ -162,8 +163,8 @@ pub struct Cases {
     pub measures: Vec<Measure>,
     /// Index of the measure of the study in `measures`.
     pub main: usize,
-    /// `true` if every case was scaled to a requested level of the study's intensity measure, so that each level has a
-    /// raw fraction of collapse.
+    /// `true` if every motion was scaled to a requested level of the study's intensity measure. The share of cases that
+    /// collapse can then be counted at each level.
     pub leveled: bool,
     /// `true` for an incremental dynamic analysis, in which each level depends on the results of earlier runs.
     pub hunted: bool,
@@ -171,7 +172,7 @@ pub struct Cases {
     pub sampled: bool,
     /// Names of the factors whose values are drawn at random, so that even cases of the same motion differ in them.
     pub drawn: Vec<String>,
-    /// Numbers of cases by how they ended.
+    /// Numbers of cases that were followed until nothing moved, and of cases that were stopped earlier.
     pub endings: Endings,
     /// All cases. They are reference-counted, since there may be a million of them, and subsets share them.
     pub all: Vec<Arc<JudgedCase>>,
@@ -219,7 +220,8 @@ pub(super) struct Reading {
     rows: usize,
     /// Number of rows read so far that are independent samples; each sample is a separate curve.
     own: usize,
-    /// Number of quantities that a Saltelli design exchanges between the two samples of a block; 0 for other designs.
+    /// Number of varied quantities of a Saltelli design; 0 for other designs. A block of the design has two cases more
+    /// than this number.
     varied: usize,
 }
 
@@ -410,13 +412,13 @@ impl Cases {
         self.all.iter().map(|case| case.wine).fold(0.0, f64::max)
     }
 
-    /// Returns the number of curves. There is one curve for each combination of a motion with values of those factors
-    /// that are not drawn for each case.
+    /// Returns the number of curves ([`JudgedCase::curve`]).
     pub fn curves(&self) -> usize {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
-    /// Returns the phrase for the curves in a sentence: "motions", or a longer phrase if a motion has several curves.
+    /// Returns the noun that sentences use for the curves: "motions" if each motion has a single curve, otherwise a
+    /// longer phrase.
     pub fn curves_are(&self) -> &'static str {
         if self.curves() == self.records.len() {
             "motions"

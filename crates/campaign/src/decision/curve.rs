@@ -26,7 +26,7 @@ pub enum BandKind {
     Records,
     /// Profile likelihood of independent cases, used if all cases are of one record.
     Likelihood,
-    /// No band: without one of the records, the remaining cases determine no curve.
+    /// No band: for at least one record, the cases of all other records do not determine a curve.
     None,
 }
 
@@ -51,7 +51,8 @@ pub struct LimitCurve {
     pub median: Option<Interval>,
     /// Method by which the confidence band was computed.
     pub band_kind: BandKind,
-    /// Curves fitted with one record left out at a time, from which the uncertainty of derived results is computed.
+    /// Curves fitted with one record left out, for each record in turn. The uncertainty of derived results is computed
+    /// from these curves.
     pub left_out: Option<LeaveOneOut>,
     /// Goodness of fit of the fitted curve to the raw counts.
     pub goodness: Option<Goodness>,
@@ -123,7 +124,7 @@ impl LimitCurve {
         }
     }
 
-    /// Returns the standard errors of the logarithms of the median and of the dispersion.
+    /// Returns two standard errors: that of `ln(median)` and that of `ln(dispersion)`.
     ///
     /// With several records, the standard errors are clustered by record. With one record, the cases are
     /// taken as independent.
@@ -138,8 +139,8 @@ impl LimitCurve {
         })
     }
 
-    /// `true` if the fraction of failures decreases significantly in some range of intensity, which no fragility curve
-    /// can describe.
+    /// `true` if the fraction of failures decreases significantly in some range of intensity. No fragility curve can
+    /// describe such a decrease.
     pub fn violates_order(&self) -> bool {
         self.monotony.p < 0.05
     }
@@ -170,7 +171,7 @@ pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
     }
 }
 
-/// Counts cases and failures, and returns them as a stripe with the intensity.
+/// Counts cases and failures, and returns the two counts as a stripe at the given intensity.
 pub(super) fn stripe(
     intensity: f64,
     of: &[&JudgedCase],
@@ -183,7 +184,7 @@ pub(super) fn stripe(
     }
 }
 
-/// Returns what the cases show about the capacity of the stack.
+/// Returns observations of the capacity of the stack, that is, of the intensity at which the stack fails.
 ///
 /// In general, each case is one observation: the stack failed or stood at the intensity of the case. In an incremental
 /// dynamic analysis, the levels of a hunt depend on the results of earlier runs, so counts at these levels would be
@@ -216,8 +217,8 @@ fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> 
         .collect()
 }
 
-/// Counts the hunts of an incremental dynamic analysis at eight levels. At each level, only those hunts are counted
-/// that show whether the stack fails there.
+/// Counts the hunts of an incremental dynamic analysis at eight levels. At each level, a hunt is counted only if it
+/// shows whether the stack fails at this level.
 fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     let bounds: Vec<(f64, f64)> = evidence.iter().map(|item| item.capacity.bounds()).collect();
     let ends = || bounds.iter().flat_map(|(low, high)| [*low, *high]);
@@ -228,7 +229,7 @@ fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     }
     let step = libm::log(last / first) / 7.0;
     (0..8)
-        // The last level is taken as it is: a value that is rounded down would miss the failures at this level.
+        // The last level is not computed: if it were rounded down, the failures at this level would not be counted.
         .map(|i| if i == 7 { last } else { first * libm::exp(step * f64::from(i)) })
         .map(|intensity| {
             let failures = bounds.iter().map(|(_, high)| u32::from(*high <= intensity)).sum();

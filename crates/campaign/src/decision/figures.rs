@@ -158,7 +158,8 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     let standing = all.iter().flat_map(Ida::points).map(|(_, d)| *d).filter(|d| d.is_finite());
     let edge = 1.15 * percent(standing.fold(0.0, f64::max)).max(1e-3);
     let top = all.iter().flat_map(Ida::points).map(|(x, _)| *x).fold(0.0, f64::max);
-    // Collapse is drawn at the edge of the plot; a curve that stands again at a higher level leaves the edge.
+    // A collapse is drawn at the right edge of the plot. If the stack stands again at a higher level, its curve leaves
+    // the edge.
     let place = |demand: f64| percent(demand).min(edge);
     let mut series: Vec<Series> = all
         .iter()

@@ -10,7 +10,7 @@ use crate::study::{Column, Provenance, Role, StudyTable};
 pub struct Sensitivity {
     /// Name of the result: "collapse", or the column of a demand.
     pub result: String,
-    /// Number of blocks of cases that are evaluated: those in which every case has the result.
+    /// Number of evaluated blocks of cases. A block is evaluated if every case of the block has the result.
     pub blocks: usize,
     /// Number of blocks that are left out because a case lacks the result.
     pub left_out: usize,

@@ -263,7 +263,8 @@ described! {
         pub groups: Vec<EffectGroup> = effect.groups.iter().map(EffectGroup::of).collect(),
     }
 
-    /// Cases in which a factor has one value, or a value in one third of its values.
+    /// Cases with the same value of a factor. If the factor has many values: one third of all cases, sorted by the
+    /// value.
     pub struct EffectGroup of group: &Group {
         /// Values of the factor in the group, as text.
         pub value: String = group.label.clone(),

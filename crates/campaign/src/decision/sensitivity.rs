@@ -9,8 +9,10 @@ use super::cases::{Cases, JudgedCase, format_value};
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Value};
 
-/// Group of cases: those in which a factor has a certain value or, if the factor has many numbers as values, one third
-/// of the cases in ascending order of the value.
+/// Group of cases in which a factor has the same value.
+///
+/// If a factor has many different numbers as values, the cases are sorted by the value and divided into three groups of
+/// equal size instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     /// Value or range of values, for display.

@@ -135,8 +135,8 @@ fn collapse(decision: &Decision) -> String {
                 measure.words(fit.curve.median)
             )
         }
-        // The share of samples that collapse estimates the share in the sampled population; a share over chosen levels
-        // has no meaning.
+        // If the cases are samples, their share of collapses is an estimate for the sampled population. If their levels
+        // were chosen, their share of collapses has no meaning.
         (Err(_), _) if cases.sampled => {
             let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
             let share = wilson(count(collapsed), count(cases.all.len()), LEVEL);

@@ -40,8 +40,9 @@ fn margin(
     }
 }
 
-/// Returns the static margin (m/s²) of each stack, which is given by its number of levels and the direction; `None` for
-/// a stack that stands even at 1 g.
+/// Returns the static margin (m/s²) of each stack; `None` for a stack that stands even at 1 g.
+///
+/// Each element of `stacks` is the number of levels of a stack, and the direction in which the stack is shaken.
 pub(super) fn margins(
     request: &Request,
     stacks: &[(u32, Direction)],
@@ -76,7 +77,7 @@ mod tests {
             margins(&request, &stacks, &going).unwrap().into_iter().map(Option::unwrap).collect();
         println!("{found:?} m/s²");
         for ((levels, direction), margin) in stacks[..3].iter().zip(&found) {
-            // An acceleration that grows to a share of the margin and stays near that value for ten seconds.
+            // The acceleration grows to the given share of the margin and stays near that value for ten seconds.
             let falls = |share: f64| {
                 let text = format!(
                     "schema = 1\n{}[motion.pulse]\nkind = \"half-sine\"\namplitude = \"{} m/s^2\"\nperiod = \"80 s\"\n\

@@ -18,8 +18,8 @@ use crate::scenario::title::{counted, number};
 /// Conditions for the rating "low": the maximum share of stacks that collapse, and the maximum upper bound of the
 /// probability of collapse.
 ///
-/// A stack whose probability of collapse exceeds the second number is rated low in at most one of 20 studies,
-/// for any number of motions.
+/// The upper bound holds with 95 % confidence. A stack whose probability of collapse exceeds the second number is
+/// therefore rated low in at most one of 20 studies, however many motions are run.
 const LOW: (f64, f64) = (0.05, 0.12);
 
 /// Maximum share of stacks that collapse for the rating "medium".
@@ -163,8 +163,8 @@ fn in_planes<'a>(all: &Heights, planes: &'a str, space: &'a str) -> &'a str {
     if all.request.in_space { space } else { planes }
 }
 
-/// Returns a direction as an insertion, such as ", along the barrels"; empty for three-dimensional shaking, which has
-/// only one direction to be reported.
+/// Returns the words that add a direction to a sentence, such as ", along the barrels"; empty for three-dimensional
+/// shaking, whose results are not divided by direction.
 fn inserted(direction: Direction) -> String {
     match direction {
         Direction::Plane(view) => format!(", {}", view.words()),
@@ -195,8 +195,8 @@ fn highest_over_constants(all: &Heights, velocity: f64) -> Option<u32> {
     all.request.heights().take_while(low).last()
 }
 
-/// Describes up to which height the chance of collapse at a given PGV (m/s) is low, whatever the uncertain constants
-/// are; empty if their effect is unknown.
+/// Returns a sentence with the largest number of levels that have a low risk at a given PGV (m/s), allowing for the
+/// uncertain constants; empty if the effect of the constants is unknown.
 fn over_constants(all: &Heights, velocity: f64) -> String {
     let highest = highest_over_constants(all, velocity);
     let Some((height, _, [from, to])) = widest(all, highest.unwrap_or(LOWEST), velocity) else {
@@ -553,8 +553,8 @@ fn medians(all: &Heights) -> Figure {
     )
 }
 
-/// Maximum ratio of a fitted median to the highest level of shaking. The cases do not determine a median that lies
-/// further above that level.
+/// Maximum ratio of a fitted median to the highest level of shaking that was run. The cases do not determine a higher
+/// median, so that such a median is not reported.
 const MOST_BEYOND: f64 = 2.0;
 
 /// Returns the fitted curve if the cases determine its median.

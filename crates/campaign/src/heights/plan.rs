@@ -22,8 +22,8 @@ pub(super) fn name(direction: Direction, recorded: bool) -> String {
     format!("{}{}", direction.name(), if recorded { "-as-recorded" } else { "" })
 }
 
-/// Returns the text of a study file. The study runs every height under every motion at every level, or under
-/// the unscaled bundled record.
+/// Returns the text of a study file. The study runs every height under every motion at every level or, if `recorded`
+/// is `true`, under the unscaled bundled record.
 pub(super) fn text(
     request: &Request,
     direction: Direction,

@@ -1,4 +1,4 @@
-//! Tests of the sentences of the report page of heights.
+//! Tests of the sentences on the report page of safe heights.
 
 use barrelstack::variants::ShareAt;
 use barrelstack_fragility::{FitError, Monotony, Stripe};
@@ -38,8 +38,9 @@ fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
     }
 }
 
-/// Returns an effect of the uncertain constants in which the friction of barrels decides. The share of stacks that
-/// collapse ranges from 0 to 2 % per level across the barrels, and from 0 to 4 % per level along them.
+/// Returns an effect of the uncertain constants in which the friction of barrels is decisive. The range of the share of
+/// stacks that collapse begins at 0. It ends at 2 % times the number of levels across the barrels, and at 4 % times the
+/// number of levels along them.
 fn effect(levels: u32, direction: Direction) -> Fitted {
     let across = direction == Direction::Plane(View::Transverse);
     let highest = f64::from(levels) * if across { 0.02 } else { 0.04 };
@@ -69,7 +70,7 @@ fn made(failures: impl Fn(u32, View, f64) -> u32) -> Heights {
     made_by(Request::default(), failures)
 }
 
-/// Returns results as [`made`], for the directions of a request.
+/// Returns results like those of [`made`], for the directions of a request.
 fn made_by(request: Request, failures: impl Fn(u32, Direction, f64) -> u32) -> Heights {
     let across = Direction::Plane(View::Transverse);
     let height = |levels: u32, direction: Direction| Height {
@@ -100,7 +101,7 @@ fn made_by(request: Request, failures: impl Fn(u32, Direction, f64) -> u32) -> H
 
 #[test]
 fn every_headline_says_the_rack_and_the_direction() {
-    // Along the barrels all stacks collapse beyond 24 cm/s, and one stack of six levels at 24 cm/s.
+    // Along the barrels, all stacks collapse above 24 cm/s. At 24 cm/s, one stack of six levels collapses.
     let along = |levels: u32, view: View, velocity: f64| match view {
         View::Transverse => 0,
         View::Longitudinal if velocity > 0.3 => 24,
@@ -115,7 +116,7 @@ fn every_headline_says_the_rack_and_the_direction() {
          stiffness and damping of the seats, up to 3 levels have a low risk: the probability of collapse is \
          0 to 12 % (95 % range)."
     );
-    // One collapse in 24 leaves up to 18 % possible, which is not rated low.
+    // After one collapse in 24 runs, the upper bound of the probability is 18 %, which is not rated low.
     let one = document(&made(|_, view, _| u32::from(view == View::Transverse)));
     assert_eq!(
         one.verdict.headline,
@@ -177,13 +178,13 @@ fn in_space_there_is_one_direction_and_no_word_of_planes() {
 
 #[test]
 fn what_is_low_is_also_stated_over_the_uncertain_constants() {
-    // Along the barrels 4 % per level: up to three levels stay below the limit of 12 %.
+    // Along the barrels, the range ends at 4 % per level, so that up to three levels do not exceed the limit of 12 %.
     let some = made(|levels, _, velocity| if levels < 5 && velocity < 0.3 { 0 } else { 24 });
     let headline = document(&some).verdict.headline;
     assert!(headline.contains("Up to 4 levels"), "{headline}");
     let over = "damping of the seats, up to 3 levels have a low risk: the probability of collapse is 0 to 12 % (95 % range).";
     assert!(headline.ends_with(over), "{headline}");
-    // The same range in the table and in the JSON.
+    // The table and the JSON document contain the same range.
     let text = markdown(&document(&some), "figures").text.replace('\u{a0}', " ");
     assert!(text.contains("0–12 %, friction of barrels on racks"), "{text}");
     let json = serde_json::to_value(some.to_document()).unwrap();
@@ -196,7 +197,7 @@ fn what_is_low_is_also_stated_over_the_uncertain_constants() {
     };
     assert_eq!(row(3)["range"], serde_json::json!([0.0, 0.12]));
     assert_eq!(row(3)["decides"]["name"], "friction of barrels on racks");
-    // If even two levels exceed the limit, the constant that decides is named.
+    // If even two levels exceed the limit, the headline names the decisive constant.
     let mut wide = some;
     for height in &mut wide.heights {
         height.effects.iter_mut().flatten().for_each(|effect| effect.range[1] = 0.4);
@@ -205,14 +206,14 @@ fn what_is_low_is_also_stated_over_the_uncertain_constants() {
     let over = "not even two levels have a low risk: the probability of collapse is 0 to 40 % (95 % range), along \
                 the barrels, and the friction of barrels on racks decides.";
     assert!(headline.ends_with(over), "{headline}");
-    // Weaker shaking in which they do not exceed the limit is named.
+    // The headline names weaker shaking in which the limit is not exceeded.
     for height in &mut wide.heights {
         height.effects[0].as_mut().unwrap().range[1] = 0.1;
     }
     let headline = document(&wide).verdict.headline;
     let weaker = "decides; in strong shaking (12 cm/s) up to 6 levels do.";
     assert!(headline.ends_with(weaker), "{headline}");
-    // Without a known effect nothing is claimed.
+    // If the effect is unknown, the headline does not mention uncertain constants.
     wide.heights.iter_mut().for_each(|height| height.effects.fill(None));
     assert!(!document(&wide).verdict.headline.contains("uncertain"));
 }

@@ -67,7 +67,7 @@ const RACK_ON_POSTS: [f64; 2] = [200.0, 400.0];
 /// space.
 const PLACE: [f64; 2] = [100.0, 300.0];
 
-/// Returns the number of barrels of a stack on one level.
+/// Returns the number of barrels on one level of a stack.
 pub(super) fn a_level(stack: &StackSpec) -> u32 {
     stack.columns * stack.space.map_or(1, |space| space.columns_along)
 }
@@ -107,7 +107,7 @@ pub(crate) fn singles(scenario: &Scenario) -> Vec<Protection> {
     let racks = catalog::RACKS.iter().map(|known| &known.rack);
     for rack in racks.filter(|rack| rack.base != stack.rack.base && rack.barrels == per_rack) {
         let deep = rack.barrels_deep.max(1);
-        // In a plane across the barrels, one row of racks is priced with all barrels that they carry.
+        // In a plane across the barrels, the price of a row of racks covers all barrels that these racks carry.
         let rows = if stack.space.is_some() { along.div_ceil(deep) } else { deep };
         let count = levels * columns.div_ceil(per_rack) * rows;
         let price = if rack.posts.is_some() { RACK_ON_POSTS } else { RACK };

@@ -69,8 +69,8 @@ fn collapse(all: &Ranking, value: f64) -> String {
     if is_site(all) { format!("{} times a year", significant(value, 2)) } else { percent(value) }
 }
 
-/// Returns a sentence if the stack, unprotected or with the best protection, falls under its own weight;
-/// empty otherwise.
+/// Returns a sentence on runs in which the stack, unprotected or with the best protection, falls under its own weight;
+/// empty if there are no such runs.
 fn by_themselves(all: &Ranking) -> String {
     let of = |one: Option<&Ranked>, name: &str| {
         let said = one.map(|one| fallen_at_rest(one.fallen_at_rest, one.runs, "runs"));
@@ -187,7 +187,8 @@ fn sentences(all: &Ranking) -> Vec<String> {
     said
 }
 
-/// Describes how often the best protection is better than others, as a share of the draws of the uncertain constants.
+/// Describes in what share of the draws of the uncertain constants the best protection is better than the unprotected
+/// stack, and better than the next protection. Returns `None` if there are no draws.
 fn order(all: &Ranking, best: &Ranked) -> Option<String> {
     let better = best.better_than_as_it_is?;
     let at = all.all.iter().position(|one| std::ptr::eq(one, best));

@@ -11,17 +11,17 @@ use crate::study::Study;
 use crate::study::StudyError;
 use crate::unknown::factors;
 
-/// Number of runs in a chunk, the unit that is stored or lost as a whole if the study is interrupted.
+/// Number of runs in a chunk. If the study is interrupted, an unfinished chunk is lost as a whole.
 const CHUNK: usize = 24;
 
-/// `[[motion]]` table with both horizontal components of the bundled record, each with the vertical
-/// component.
+/// `[[motion]]` table with two motions from the bundled record: one for each horizontal component, both with the
+/// vertical component.
 pub(crate) const NAPA: &str = "[[motion]]\n\
      bundled = \"napa-college-2014\"\n\
      components = [\"horizontal-1\", \"horizontal-2\"]\n\
      each = { vertical = \"UP\" }\n\n";
 
-/// Returns the name of the folder of a study, which lies in the folder of the protection.
+/// Returns the name that the folder of a study has within the folder of the protection.
 pub(super) fn name(direction: &str, round: u32) -> String {
     format!("{direction}-{}", round + 1)
 }

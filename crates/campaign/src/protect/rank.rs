@@ -61,7 +61,7 @@ pub(super) struct Over {
 /// Mean of one quantity, with its interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// Mean over all motions, and weighted mean over the levels of shaking.
+    /// Mean over all motions. For each motion, the results at the levels of shaking are weighted and added.
     pub mean: f64,
     /// Lower end of the 95 % interval, clustered by motion.
     pub low: f64,
@@ -106,7 +106,7 @@ impl Runs {
         }
     }
 
-    /// Returns the effect of the uncertain constants, over the weighted levels (m/s).
+    /// Returns the effect of the uncertain constants. The results at the levels (m/s) are weighted and added.
     ///
     /// The regression gives the share of collapses at each level. The number of barrels that fall in a collapse does
     /// not depend on the constants: it is the mean over all collapses at that level or, if nothing collapses there,
@@ -143,8 +143,8 @@ impl Runs {
         Over { range: Some([low, high]), fallen }
     }
 
-    /// Returns the mean of a quantity for each motion, over the weighted levels. Motions that lack a run at
-    /// some level are left out.
+    /// Returns a quantity for each motion: its means over the runs at each level are weighted and added. Motions that
+    /// lack a run at some level are left out.
     fn by_motion(&self, quantity: Quantity, weights: &[f64]) -> BTreeMap<&str, f64> {
         let weighted = |levels: &Vec<Vec<Outcome>>| {
             let mean = |runs: &Vec<Outcome>| {
@@ -180,11 +180,11 @@ impl Runs {
         Estimate { mean, low: scale * low, high: scale * high }
     }
 
-    /// Estimates by how much a quantity is smaller than in the runs `other` under the same motions.
+    /// Estimates by how much a quantity is smaller than in the runs `other`, under the same motions.
     ///
-    /// Returns the mean of the differences and its 95 % interval ([`mean_difference`]). The interval is
-    /// widened for the number of tries, since the best of them is reported. `most` is the largest possible
-    /// value in one run. Returns `None` if fewer than two motions are common to both.
+    /// Returns the mean of the differences and its 95 % interval ([`mean_difference`]). The interval is widened so that
+    /// it holds for `tries` comparisons simultaneously. `most` is the largest possible value of the quantity in one
+    /// run. Returns `None` if fewer than two motions occur in both sets of runs.
     pub(super) fn less_than(
         &self,
         other: &Self,
@@ -331,7 +331,7 @@ mod tests {
         let hazard = Hazard::new(&rows).unwrap();
         let levels = [0.1, 0.2, 0.4];
         let found = weights(&levels, Some(&hazard));
-        // Every exceedance of a level well above the lowest counts once.
+        // Shaking above the lowest level counts fully. Below it, the effect decreases to zero at half of that level.
         let above: f64 = found.iter().sum();
         let exact = hazard.expected(1.0, |x| {
             if x >= 0.1 { 1.0 } else { (x / 0.05).ln().max(0.0) / 2.0_f64.ln() }

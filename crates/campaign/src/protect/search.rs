@@ -39,7 +39,8 @@ impl Candidate {
         Ok(Self { protection, stacks, runs, round: 0 })
     }
 
-    /// Returns the number of barrels of the stack, in the direction in which this number is larger.
+    /// Returns the number of barrels in the model of the stack; if there are two models, one for each direction, the
+    /// larger number.
     pub(super) fn barrels(&self) -> f64 {
         let stacks = self.stacks.iter().filter_map(|(_, scenario)| scenario.stack());
         stacks.map(|stack| f64::from(stack.levels * a_level(stack))).fold(0.0, f64::max)

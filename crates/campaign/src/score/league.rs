@@ -136,9 +136,9 @@ fn reason(error: &ScoreError) -> String {
 }
 
 impl League {
-    /// Returns how often the score of a row is higher than the score of the next row, as a share of the draws of the
-    /// uncertain constants. A draw has the same constants in all rows. Returns `None` for the last row, or if draws are
-    /// unknown.
+    /// Returns the share of the draws of the uncertain constants in which the score of a row is higher than that of the
+    /// next row. A draw has the same constants in all rows. Returns `None` for the last row, or if the scores in the
+    /// draws are unknown.
     pub fn better_than_next(&self, row: usize) -> Option<f64> {
         let [own, next] = [self.rows.get(row)?, self.rows.get(row + 1)?].map(|(_, s)| s.draws());
         (!own.is_empty() && own.len() == next.len()).then(|| share_less(&next, &own))
@@ -193,7 +193,7 @@ impl League {
         let columns = columns.map(|(name, unit, kind, cell)| {
             let mut column = Column::empty(ColumnSpec::new(name, unit, Role::Outcome, kind));
             for row in &rows {
-                // Every cell has the kind of its column.
+                // The result is ignored: the value always has the kind of its column.
                 let _ = column.values.push(cell(row));
             }
             column

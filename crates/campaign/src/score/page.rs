@@ -52,13 +52,14 @@ pub(super) fn document(sheet: &Sheet) -> Document {
     }
 }
 
-/// A score on a scale: its name, the score (cm/s), and its range over the uncertain constants (cm/s).
+/// Entry of a plot of scores: its name, the score (cm/s), and the range of the score over the uncertain constants
+/// (cm/s).
 pub(super) type OnScale = (String, u32, Option<[u32; 2]>);
 
 /// Scores of the racks of the catalog, from `validation/league`, without devices.
 const REFERENCES: &str = include_str!("references.csv");
 
-/// Returns the scores of the catalog's racks, with which a score from runs in planes is compared.
+/// Returns the scores of the catalog's racks, for comparison with scores from runs in planes.
 pub(super) fn references() -> Vec<OnScale> {
     let row = |line: &str| {
         let mut cells = line.split(',');
@@ -165,7 +166,7 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
     said
 }
 
-/// Describes the range of the score over the uncertain constants, and the constant that decides.
+/// Describes the range of the score over the uncertain constants, and names the decisive constant.
 fn over_constants(sheet: &Sheet) -> Option<String> {
     let [low, high] = sheet.range().filter(|_| !sheet.draws().is_empty())?;
     let decides = sheet.decisive().map(|one| {

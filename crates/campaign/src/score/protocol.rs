@@ -60,8 +60,8 @@ impl Protocol {
         }
     }
 
-    /// Returns the protocol with every `step`-th motion of each kind, for an estimate in less time. Its name states this,
-    /// since only scores of the same protocol are comparable.
+    /// Returns a faster protocol, with every `step`-th motion of each kind. Its name contains the step, since only
+    /// scores of the same protocol are comparable.
     #[must_use]
     pub fn thinned(self, step: u32) -> Self {
         if step <= 1 {
@@ -72,7 +72,8 @@ impl Protocol {
         Self { name, periods, synthetic: self.synthetic / step, ..self }
     }
 
-    /// Returns the protocol with the name that it has for a stack; the name differs for three-dimensional stacks.
+    /// Returns the protocol under the name that applies to a stack. For a three-dimensional stack, the name contains
+    /// `-space`.
     pub(super) fn of(&self, stack: &Scenario) -> Self {
         if !stack.is_spatial() {
             return self.clone();
@@ -84,7 +85,7 @@ impl Protocol {
         Self { name, ..self.clone() }
     }
 
-    /// Returns the overrides that give the stack of a scenario the number of levels that the protocol requires.
+    /// Returns the overrides that set the number of levels of a stack to that of the protocol.
     pub(super) fn stacked(&self) -> Vec<String> {
         vec![format!("stack.levels={}", self.levels)]
     }

@@ -1,4 +1,4 @@
-//! Claims of chunks: a process locks a file in the folder as long as it works on a chunk.
+//! Claims of chunks: a process keeps a file in the folder locked while it works on a chunk.
 //!
 //! The lock is an operating-system lock (`flock`), which also works on network file systems. It is released
 //! when the process ends for any reason, so that another process can take over the chunk. A suspended process

@@ -104,13 +104,13 @@ pub(super) struct PlannedCase {
 pub(super) enum Cases {
     /// Every combination. The motion varies slowest, then the factors, and the level varies fastest.
     Crossed,
-    /// Cases with the base values or with a single change of them. The motion varies slowest, then the draw, then the
-    /// level, and the change varies fastest.
+    /// Cases with the base values, and cases with a single change of the base values. The motion varies slowest, then
+    /// the draw, then the level, and the change varies fastest.
     OneAtATime {
         /// Changes, each given by the index of a factor and the new value of that factor.
         changes: Vec<(usize, Setting)>,
-        /// Number of times that all other factors are drawn for each motion; all changes and levels use the same
-        /// draws.
+        /// Number of times that the factors with distributions are drawn for each motion; all changes and levels use
+        /// the same draws.
         draws: u64,
     },
     /// Points of the unit cube, whose axes are the motion, the level and the factors.
@@ -126,8 +126,8 @@ pub(super) enum Sampling {
     LatinHypercube(Vec<Vec<u32>>),
     /// Sobol' sequence, with one dimension for each axis.
     Sobol(Vec<Axis>),
-    /// Saltelli blocks: two dimensions of the Sobol' sequence for each axis, and the indices of the axes that
-    /// are exchanged.
+    /// Saltelli blocks: two dimensions of the Sobol' sequence for each axis, and the indices of the axes whose values
+    /// are exchanged between the two samples of a block.
     Saltelli { axes: Vec<[Axis; 2]>, exchanged: Vec<usize> },
 }
 
@@ -259,7 +259,7 @@ fn crossed(study: &Study, number: u64) -> PlannedCase {
     PlannedCase { number, id, motion, level, settings }
 }
 
-/// Returns the name of the axis for the deviate that a group of correlated factors shares.
+/// Returns the name of the sampling axis for the deviate that all factors of a correlated group share.
 fn common(group: usize) -> String {
     format!("correlation {}", group + 1)
 }
@@ -278,7 +278,7 @@ fn one_at_a_time(
     rest /= draws.max(1);
     let motion = digit(&mut rest, study.motions.len());
     let mut settings = vec![None; study.factors.len()];
-    // Draws depend on the motion only, so that rows of a motion differ only in the change.
+    // The drawn values depend on the motion and the draw only, so that they are the same for all changes and levels.
     for (factor, setting) in study.factors.iter().zip(&mut settings).filter(|_| draws > 0) {
         if let Variation::Distribution(distribution) = &factor.variation {
             let words = format!("draw {draw} of {}", study.motions[motion].name);
@@ -475,7 +475,7 @@ mod tests {
                 product(&a, &b) / (product(&a, &a) * product(&b, &b)).sqrt()
             };
             let (found, other) = (correlation([0, 1]), correlation([0, 2]));
-            // The standard errors of 400 independent draws are 0.026 and 0.05.
+            // For 400 independent draws, the standard errors of the two correlations are 0.026 and 0.05.
             assert!((found - 0.7).abs() < 0.08 && other.abs() < 0.15, "{design}: {found} {other}");
             assert_eq!(logs(&plain, 2), logs(&along, 2), "{design}: a factor without a group");
             let scatter = logs(&along, 1).iter().map(|log| log * log).sum::<f64>() / 400.0;

@@ -144,11 +144,11 @@ impl Distribution {
         Some(value).filter(|_| !matches!(self.shape, Shape::Discrete(_)))
     }
 
-    /// Returns the standard deviation of the natural logarithm of the value, without truncation if the distribution is
-    /// lognormal.
+    /// Returns the dispersion of the distribution; NaN if it is discrete.
     ///
-    /// For any other distribution, the result is the dispersion of the lognormal distribution with the same 16 % and
-    /// 84 % fractiles; NaN if the distribution is discrete.
+    /// For a lognormal distribution, this is the standard deviation of the natural logarithm before any truncation.
+    /// For any other distribution, it is the dispersion of the lognormal distribution with the same 16 % and 84 %
+    /// fractiles.
     pub(crate) fn dispersion(&self) -> f64 {
         if let Shape::Lognormal { dispersion, .. } = &self.shape {
             return *dispersion;
@@ -190,8 +190,8 @@ impl Cut {
     /// Converts a cumulative probability of the truncated distribution to the cumulative probability of the
     /// same value in the untruncated distribution.
     fn uncut(&self, u: f64) -> f64 {
-        // The result stays away from 0 and 1, where quantiles are infinite. A draw with a resolution of 53 bits is not
-        // changed.
+        // The bounds keep the result away from 0 and 1, where quantiles are infinite. They do not change a draw, which
+        // has a resolution of 53 bits.
         (self.below[0] + u * (self.below[1] - self.below[0])).clamp(1e-300, 1.0 - 1e-16)
     }
 
@@ -228,7 +228,8 @@ fn discrete(reader: &Reader<'_>, domain: Domain) -> Result<Vec<(f64, Setting)>, 
     let total: f64 = weights.iter().sum();
     if weights.len() != settings.len() || total <= 0.0 {
         let message = format!(
-            "there are {} values and {} weights with the sum {total}; give one weight for each value, not all 0",
+            "there are {} values and {} weights, whose sum is {total}; give each value a weight, at least one of \
+             them above 0",
             settings.len(),
             weights.len()
         );

@@ -114,7 +114,7 @@ mod tests {
 
     use super::*;
 
-    /// Another writer may begin a draft of the same file after a draft is renamed and before its writer ends.
+    /// A writer that has renamed its draft must not remove the draft that another writer has begun for the same file.
     #[test]
     fn writers_of_one_file_leave_the_drafts_of_the_others_alone() {
         let folder = tempfile::tempdir().unwrap();

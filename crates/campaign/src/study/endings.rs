@@ -14,13 +14,13 @@ use super::table::StudyTable;
 use crate::scenario::Until;
 use crate::watch::{Ending, after_collapse};
 
-/// Numbers of cases with a verdict, by how they ended.
+/// Numbers of cases with a verdict: those that were followed until nothing moved, and those that were stopped earlier.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Endings {
     /// Number of all cases with a verdict.
     pub judged: u64,
-    /// Number of cases that were simulated until nothing moved. The ground was then still, or almost still after a
-    /// collapse.
+    /// Number of cases that were simulated until nothing moved. By then the ground was still; after a
+    /// collapse, an acceleration of the ground of at most 0.02 g was allowed.
     ///
     /// Includes cases whose stack fell under its own weight, before any shaking.
     pub followed: u64,

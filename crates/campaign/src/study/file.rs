@@ -53,8 +53,9 @@ impl Study {
         read(&Opened::parse(source_name, text)?, None)
     }
 
-    /// Reads a study that the program wrote for records named by the caller. Errors do not state a place in the text,
-    /// which the user does not know; they may quote the records.
+    /// Reads a study whose text the program has generated; the caller has named the records.
+    ///
+    /// Errors do not state a place in the text, since the user does not know the text. They may quote the records.
     pub(crate) fn written(name: &str, text: &str) -> Result<Self, StudyError> {
         let mut study = Self::parse(&format!("{name}.toml"), text).map_err(|error| {
             let StudyError::File(error) = error else { return error };
@@ -395,7 +396,7 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
     if let Some(Variation::Distribution(distribution)) = &variation
         && distribution.quantile(LOW).number() <= 0.0
     {
-        let message = "levels must be above zero, and the distribution has values that are not; truncate it with `least`";
+        let message = "levels must be above zero, but the distribution has values that are not; truncate it with `least`";
         return Err(reader.inconsistent("distribution", message.to_owned()));
     }
     reader.finish();
@@ -431,8 +432,8 @@ fn read_design(
         DesignKind::FullFactorial => {
             if let Some(factor) = drawn {
                 return refuse(&format!(
-                    "a full factorial design crosses listed values, but `{}` has a distribution: list its `values`, or use \
-                     a sampled design such as \"sobol\"",
+                    "a full factorial design combines listed values, but `{}` has a distribution: list its `values`, \
+                     or use a sampled design such as \"sobol\"",
                     factor.name
                 ));
             }
@@ -507,7 +508,9 @@ fn read_design(
         DesignKind::Ida => Design::Ida(read_hunt(&reader, intensity.as_ref())?),
     };
     if drawn_levels && matches!(kind, DesignKind::FullFactorial | DesignKind::OneAtATime) {
-        return refuse("this design crosses levels; give [intensity] `levels` or a `range`");
+        return refuse(
+            "this design needs a list of levels, but [intensity] has a distribution: give it `levels` or a `range`",
+        );
     }
     reader.finish();
     Ok((design, chunk, intensity))

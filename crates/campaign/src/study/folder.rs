@@ -232,7 +232,7 @@ impl Folder {
     pub(super) fn claim(&self, chunk: usize) -> Result<Option<Claim>, StudyError> {
         let claim = Claim::take(self.path.join(SHARDS).join(format!("{chunk:06}.claim")))?;
         if claim.is_some() && !self.is_ours()? {
-            let reason = "has been taken over by a larger form of the study since this run began; run that study";
+            let reason = "holds a larger version of the study, which was started after this run; run that version";
             return Err(StudyError::Folder {
                 folder: self.path.clone(),
                 reason: reason.to_owned(),
@@ -443,8 +443,8 @@ impl Study {
         format!("{:016x}", self.hash())
     }
 
-    /// Returns the names of the factors that are drawn: for each case of a stripes design, or for each draw
-    /// of a one-at-a-time design.
+    /// Returns the names of the factors whose values are drawn at random: for each case of a stripes design, or for
+    /// each draw of a one-at-a-time design. Empty for all other designs.
     fn drawn(&self) -> Vec<String> {
         let drawn = self.factors.iter().filter(|factor| factor.crossed().is_none());
         let names = drawn.map(|factor| factor.name.clone());

@@ -11,8 +11,8 @@ use super::motions::hash_files;
 use crate::scenario::fnv1a;
 use crate::scenario::quantity::plain;
 
-// The motions and the number of samples are not inputs of this kind, since a study grows by further motions and
-// samples, which come after the existing ones. The key of a chunk covers the cases of the chunk and their motions.
+// The motions and the number of samples are not among these inputs, since a study may grow by motions and samples that
+// are added after the existing ones. Instead, the key of a chunk covers the cases of the chunk and their motions.
 described! {
     /// An input on which every case of a study depends.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]

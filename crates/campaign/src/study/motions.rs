@@ -17,7 +17,7 @@ use super::error::StudyError;
 /// Motion of a study.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
-    /// Name of the motion in the table, which is unique in the study.
+    /// Name of the motion in the table; no other motion of the study has this name.
     pub(super) name: String,
     /// Source of the motion.
     pub(super) shaking: Shaking,

@@ -19,7 +19,7 @@ pub struct Chunk {
     pub last: u64,
 }
 
-/// Sizes of chunks: as the study states, or 64 cases, doubled after every 512 chunks.
+/// Sizes of chunks: the size that the study states or, by default, 64 cases, doubled after every 512 chunks.
 ///
 /// Chunks are small enough that little work is lost at an interruption and that many processes can work at
 /// once. They are large enough that a study of a million cases has only about 2,500 files. In a study of a
@@ -94,7 +94,7 @@ impl Chunks {
             return Self::Even { count, sizes };
         }
         let mut chunks: Vec<Vec<u32>> = Vec::new();
-        // Chunk of each kind that is not yet full.
+        // For each kind of model, the chunk that is not yet full.
         let mut open: HashMap<String, usize> = HashMap::new();
         for number in 0..u32::try_from(count).unwrap_or(u32::MAX) {
             let kind = study.structure(&study.cases.case(study, u64::from(number)));

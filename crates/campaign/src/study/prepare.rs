@@ -33,7 +33,7 @@ pub(super) struct Resources<'a> {
     pub(super) stop: &'a dyn Fn() -> bool,
 }
 
-/// A case that is ready to run, with its motion, or the reason why it cannot run.
+/// A case with its motion, ready to run, or else the reason why the case cannot run.
 struct Built {
     shaken: Option<Shaken>,
     prepared: Result<Prepared, String>,

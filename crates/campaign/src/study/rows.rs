@@ -8,7 +8,7 @@ use crate::ensemble::{self, CASE_COLUMNS, CaseColumn};
 use barrelstack_report::column::{ColumnSpec, Role, Value, ValueKind};
 use barrelstack_space::columns;
 
-/// Columns of every table that precede those of the factors.
+/// Columns that every table has before the columns of the factors.
 const KEYS: [(&str, ValueKind); 3] =
     [("case", ValueKind::Integer), ("id", ValueKind::Text), ("chunk", ValueKind::Integer)];
 

@@ -1,4 +1,4 @@
-//! Values of factors, in the form of a scenario file and in the form of a table.
+//! Values of factors, both as written in scenario files and as written in tables.
 
 use crate::scenario::field::{Field, Kind, Named as _, Range};
 use crate::scenario::reader::Reader;
@@ -11,9 +11,9 @@ use barrelstack_report::column::{Value, ValueKind};
 /// One value of a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Setting {
-    /// Value in the form of a scenario file, with its place in the study file.
+    /// Value as written in a scenario file, with its place in the study file.
     pub(super) node: Node,
-    /// Value in the form of a table, in SI units.
+    /// Value as written in a table, in SI units.
     pub(super) value: Value,
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn word(value: &Value) -> String {
     }
 }
 
-/// Domain of a field: the allowed values and the way in which they are written.
+/// Domain of a field: the allowed values and their notation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Domain {
     kind: Kind,

@@ -20,7 +20,7 @@ use crate::watch::Ending;
 /// Result of a case, with directions if the case is three-dimensional.
 pub(super) struct FinishedCase {
     pub(super) result: CaseResult,
-    /// Heading in which the first body left its seat, and the heading of each fallen barrel from its original
+    /// Direction in which the first body left its seat, and for each fallen barrel the direction from its original
     /// place.
     ///
     /// `None` for a case in a plane, or without a verdict.

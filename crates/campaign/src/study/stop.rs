@@ -17,7 +17,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Adds a case by the name of its outcome.
+    /// Counts a case with the given outcome, such as "stable" or "collapse".
     pub fn add(&mut self, outcome: &str) {
         self.cases += 1;
         self.judged += u64::from(matches!(outcome, "stable" | "collapse"));
@@ -69,8 +69,8 @@ described! {
 }
 
 impl StopRule {
-    /// `true` if the cases counted in `tally` satisfy the rule; the counted cases must be all cases up to the
-    /// end of some chunk.
+    /// `true` if the cases counted in `tally` satisfy the rule. `tally` must count all cases from the first one to
+    /// the end of a chunk.
     pub(super) fn met(&self, tally: Tally) -> bool {
         let half = tally.collapse().map(|(_, [low, high])| 0.5 * (high - low));
         tally.cases >= u64::from(self.least) && half.is_some_and(|half| half <= self.half_width)
@@ -116,7 +116,8 @@ mod tests {
                 // deviation of 0.5 %; without a stopping rule, Wilson's interval covers some probabilities in only 93 %
                 // of the studies.
                 assert!(covered > 0.93, "{probability} {half_width} {covered}");
-                // Measured: too low by at most 0.0059, at a half-width of 0.05, since a study with few collapses stops sooner.
+                // Measured: the mean share is too low by at most 0.0059, at a half-width of 0.05, since a study with
+                // few collapses stops sooner.
                 assert!((share - probability).abs() < 0.2 * half_width, "{probability} {share}");
             }
         }

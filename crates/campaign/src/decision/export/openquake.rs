@@ -49,8 +49,8 @@ fn numbers(values: impl IntoIterator<Item = f64>) -> String {
 
 const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<nrml xmlns=\"http://openquake.org/xmlns/nrml/0.5\">\n";
 
-/// Returns the mean and the standard deviation of a lognormal capacity, by which `OpenQuake` describes a
-/// fragility curve.
+/// Returns the mean and the standard deviation of a lognormal capacity. `OpenQuake` describes a fragility curve by
+/// these two numbers.
 fn moments(curve: &Lognormal) -> (f64, f64) {
     let variance = curve.dispersion * curve.dispersion;
     let mean = curve.median * libm::exp(0.5 * variance);
@@ -105,16 +105,15 @@ fn wine_lost(case: &JudgedCase) -> f64 {
     if case.wine > 0.0 { lost / case.wine } else { 0.0 }
 }
 
-/// Largest variance of a loss ratio that is written to a file, as a share of m (1 − m). This product is the
-/// largest possible variance of a ratio between 0 and 1 with the mean m.
+/// Maximum variance of a loss ratio in an exported file, as a share of m (1 − m), where m is the mean loss ratio. The
+/// variance of a ratio between 0 and 1 cannot exceed m (1 − m).
 ///
-/// `OpenQuake` draws ratios from a beta distribution, whose variance must be below m (1 − m). `OpenQuake`
-/// interpolates the mean and the coefficient of variation separately between two levels, so that a margin is
-/// needed.
+/// `OpenQuake` draws ratios from a beta distribution, whose variance must be below m (1 − m). Between two levels,
+/// `OpenQuake` interpolates the mean and the coefficient of variation separately, so that a margin is needed.
 const MOST_SCATTER: f64 = 0.99;
 
-/// Largest variance that interpolation between two written levels may give, as a share of m (1 − m), where m is the
-/// mean.
+/// Maximum variance of a loss ratio that is interpolated between two exported levels, as a share of m (1 − m), where m
+/// is the interpolated mean.
 const MOST_BETWEEN: f64 = 0.999;
 
 /// Maximum relative and absolute difference between two interpolated means: the mean that `OpenQuake` interpolates
@@ -259,7 +258,7 @@ pub(super) fn vulnerabilities(
 
 /// Returns an exposure template with one stack at 0° E, 0° N, and the taxonomy mapping of that stack.
 ///
-/// The contents of the stack are its wine (m³), and its nonstructural value is its number of barrels.
+/// In the template, `contents` is the volume of wine in the stack (m³), and `nonstructural` is the number of barrels.
 pub(super) fn exposure(
     decision: &Decision,
     asset: &str,

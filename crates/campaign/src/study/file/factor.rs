@@ -10,8 +10,8 @@ use crate::study::distribution::Distribution;
 use crate::study::setting::{Domain, Setting};
 use crate::study::{Factor, Variation, rows};
 
-/// Probability of the quantile that is tested as the low end of a distribution. The high end has the
-/// probability 1 minus this value.
+/// Cumulative probability of the lowest value at which a continuous distribution is tested before any run. The highest
+/// tested value has the cumulative probability 1 − `LOW`.
 pub(super) const LOW: f64 = 1e-6;
 
 /// Returns an error if a new factor has the same column as another factor, or sets the same field.
@@ -40,7 +40,8 @@ pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Optio
     None
 }
 
-/// Remaining capacity for values of factors. It limits memory and work before any value is tested.
+/// Limits on the number of factor values and on the number of cases of a study. They are checked before any value is
+/// tested, so that a study that is too large takes neither memory nor time.
 #[derive(Debug)]
 pub(super) struct Room {
     /// Number of values that may still be listed.
@@ -53,13 +54,13 @@ pub(super) struct Room {
 const MOST_VALUES: usize = 20_000;
 
 impl Room {
-    /// Creates the capacity for a number of motions. `most` is the maximum number of cases; `None` if the
+    /// Creates the limits for a study with a number of motions. `most` is the maximum number of cases; `None` if the
     /// design does not combine all values.
     pub(super) fn new(motions: usize, most: Option<u64>) -> Self {
         Self { values: MOST_VALUES, cases: most.map(|most| (motions as u64, most)) }
     }
 
-    /// Subtracts the values of a factor from the capacity; returns an error if they exceed it.
+    /// Counts the values of a factor toward the limits; returns an error if a limit is exceeded.
     fn take(&mut self, reader: &Reader<'_>, values: &[Setting]) -> Result<(), ScenarioError> {
         let key = if reader.has("range") { "range" } else { "values" };
         let Some(left) = self.values.checked_sub(values.len()) else {
@@ -177,8 +178,7 @@ fn domain_of(
     })
 }
 
-/// Returns the first value that a range or a distribution states, which determines the dimension of the
-/// factor.
+/// Returns the first value that a range or a distribution states. This value determines the dimension of the factor.
 fn first_of(section: &Reader<'_>) -> Result<Option<Node>, ScenarioError> {
     match ["from", "mean", "median", "values"].into_iter().find(|key| section.has(key)) {
         Some("values") => Ok(section.nodes("values")?.and_then(|nodes| nodes.first().cloned())),
