@@ -112,21 +112,21 @@ pub enum ModelError {
         /// The name.
         name: String,
     },
-    /// A free body has no mass.
+    /// The mass of a free body is not positive or not finite.
     #[error("body \"{name}\" has mass {mass} kg: a free body needs a positive, finite mass")]
     Mass {
-        /// The body.
+        /// Name of the body.
         name: String,
         /// Mass (kg) of the body.
         mass: f64,
     },
-    /// A free body has no moment of inertia.
+    /// The moment of inertia of a free body is not positive or not finite.
     #[error(
         "body \"{name}\" has a moment of inertia of {inertia} kg·m²: a free body needs a positive, \
          finite moment of inertia"
     )]
     Inertia {
-        /// The body.
+        /// Name of the body.
         name: String,
         /// Smallest principal moment of inertia (kg·m²) of the body.
         inertia: f64,
@@ -134,13 +134,13 @@ pub enum ModelError {
     /// A free body has an unbounded surface.
     #[error("body \"{name}\" has an unbounded surface but is free: fix the body to the ground")]
     Unbounded {
-        /// The body.
+        /// Name of the body.
         name: String,
     },
     /// A force element is invalid.
     #[error("element \"{name}\": {problem}")]
     Element {
-        /// The element.
+        /// Name of the element.
         name: String,
         /// The problem.
         problem: &'static str,

@@ -14,7 +14,7 @@ pub(crate) enum Pairs {
     Listed {
         /// The pairs.
         pairs: Vec<ContactPair>,
-        /// For every two bodies that can touch, the range of their pairs, in order.
+        /// Ranges of the pairs that have the same two bodies, in order.
         couples: Vec<Couple>,
     },
     /// The pairs of two bodies depend only on the kinds of the bodies. So no list of all pairs is stored; its length
@@ -25,7 +25,7 @@ pub(crate) enum Pairs {
         /// The pairs of two bodies, indexed by the kind of the body with the lower ID and then by the kind of the other
         /// body. In these pairs, the body with the lower ID is number 0 and the other body is number 1.
         meetings: Vec<Vec<Vec<ContactPair>>>,
-        /// Number of pair indices that are reserved for every two bodies.
+        /// Number of pair indices that are reserved for each combination of two bodies.
         most: usize,
     },
     /// The pairs within each party are stored. The pairs between parties are derived from the contact kinds of the
@@ -50,7 +50,7 @@ pub(crate) struct Foreign {
     pub(crate) parties: Vec<(usize, InterfaceId)>,
     /// Rules for contacts between contact kinds.
     pub(crate) crossing: Arc<Crossing>,
-    /// Number of pair indices that are reserved for every two bodies.
+    /// Number of pair indices that are reserved for each combination of two bodies.
     pub(crate) most: usize,
 }
 

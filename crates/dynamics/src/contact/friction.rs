@@ -13,8 +13,8 @@ pub enum FrictionLaw<R = f64> {
     /// Coulomb friction with elastic sticking: a tangential spring deforms before the contact slides.
     ///
     /// ```text
-    /// spring  = k_t s            held within ± μ fₙ
-    /// f_t     = spring + c_t v_t held within ± μ fₙ
+    /// spring  = k_t s            limited to ± μ fₙ
+    /// f_t     = spring + c_t v_t limited to ± μ fₙ
     /// ```
     ///
     /// `s` is the displacement of the spring. It is integrated like any other coordinate of the state; its rate of
@@ -116,8 +116,8 @@ impl<R: Real> FrictionLaw<R> {
         }
     }
 
-    /// Returns the creep speed (m/s) of a body under a steady tangential force that is `share` of the friction limit (0
-    /// ≤ share < 1); zero for all laws except [`FrictionLaw::Regularized`].
+    /// Returns the creep speed (m/s) of a body under a steady tangential force, given as the fraction `share` of the
+    /// friction limit (0 ≤ share < 1); zero for all laws except [`FrictionLaw::Regularized`].
     pub fn creep_speed(&self, share: f64) -> R {
         match *self {
             Self::Frictionless | Self::Coulomb { .. } => R::zero(),

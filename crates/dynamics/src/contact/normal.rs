@@ -39,7 +39,8 @@ pub enum NormalLaw<R = f64> {
         /// `n`.
         exponent: Exponent,
     },
-    /// Law with a prescribed coefficient of restitution `e`, independent of the mass and, well above `v`, of the speed:
+    /// Law with a prescribed coefficient of restitution `e`, which depends neither on the mass nor, at speeds well
+    /// above `v`, on the speed:
     ///
     /// ```text
     /// fₙ = k δ^(3/2) (1 + e² + (1 − e²) s) / 2      s = δ̇ / √(δ̇² + v²)

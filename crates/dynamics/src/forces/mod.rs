@@ -73,9 +73,9 @@ impl<S: Space> Default for Losses<S> {
 
 /// Total contact force of one pair.
 ///
-/// Where one contact is divided between two corners, its stored energy changes as the shares of the corners change. To
-/// close the energy balance, the total includes an additional force along the side. So the total may differ from the
-/// sum of the contact forces.
+/// A contact near the end of a side may be divided between a corner of each body. As the bodies slide along each other,
+/// the shares of the corners change, and with them the stored energy. The total includes the force along the side that
+/// corresponds to this change of energy, so it may differ from the sum of the contact forces.
 #[derive(Clone, Copy, Debug)]
 pub struct PairForce<S: Space> {
     /// Index of the pair in the model.
@@ -116,8 +116,8 @@ pub struct Scratch<S: Space> {
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
     pub rotations: Vec<S::Rotation>,
-    /// Rate of change (m/s) of every stick displacement: the slip rate, plus the rate at which the rotation of the
-    /// bodies turns the displacement; zero without contact.
+    /// Rate of change (m/s) of the displacement of every tangential spring: the slip rate, plus the rate at which the
+    /// rotation of the bodies turns the displacement; zero without contact.
     pub slip_rates: Vec<S::Tangent>,
     /// Number of force evaluations.
     pub evaluations: u64,
@@ -155,7 +155,8 @@ pub struct Pressed<S: Space> {
     pub touching: <S::Real as Real>::Mask,
     /// Point (m) at which the force acts, in the frame of the target's surface.
     pub point: S::Vector,
-    /// Tangent plane of the contact, which is stored in the contact history together with the stick displacement.
+    /// Tangent plane of the contact, which is stored in the contact history together with the displacement of the
+    /// tangential spring.
     tangent_plane: S::TangentPlane,
     /// Compressive force (N); zero in lanes without contact.
     pub normal_force: S::Real,
@@ -381,8 +382,8 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
     }
 }
 
-/// Accepts the state that `scratch` was evaluated at: limits every stick displacement to the friction capacity, resets
-/// elements without contact, and breaks force elements that fail.
+/// Accepts the state that `scratch` was evaluated at: limits the displacement of every tangential spring to the
+/// friction capacity, resets elements without contact, and breaks force elements that fail.
 pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
     commit_corrected(
         model,
@@ -393,8 +394,8 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
     );
 }
 
-/// Accepts the state as [`commit`] does, with corrected stick displacements: `corrected` maps the index of an element
-/// and its stick displacement (m) to the displacement (m) that is accepted.
+/// Accepts the state as [`commit`] does, with corrected displacements of the tangential springs: `corrected` maps the
+/// index of an element and the displacement (m) of its spring to the displacement (m) that is accepted.
 pub(crate) fn commit_corrected<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,

@@ -1,8 +1,8 @@
 //! Time integration: from one accepted state to the next.
 //!
 //! Every method starts with the forces of the initial state in `scratch`, and leaves the forces of the accepted state
-//! there. Stick displacements are advanced by their rates like every other coordinate; the contact history is committed
-//! only when a state is accepted.
+//! there. The displacements of the tangential springs are advanced by their rates like every other coordinate; the
+//! contact history is committed only when a state is accepted.
 
 mod runge_kutta;
 mod verlet;
@@ -173,7 +173,7 @@ fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>
     forces::commit(model, state, scratch);
 }
 
-/// Adds a multiple of the slip rates to the stick displacements.
+/// Adds the slip rates, multiplied by a time (s), to the displacements of the tangential springs.
 #[inline(always)]
 fn advance_sticks<S: Space>(state: &mut State<S>, slip_rates: &[S::Tangent], time: S::Real) {
     for (stick, rate) in state.contact_elements.sticks.iter_mut().zip(slip_rates) {

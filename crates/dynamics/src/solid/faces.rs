@@ -101,7 +101,7 @@ struct Face {
 }
 
 impl Face {
-    /// Returns the face of a block toward a direction in the frame of the block.
+    /// Returns the face of a block that faces a direction, which is given in the frame of the block.
     ///
     /// `frame` is the rotation from the frame of the block to that of the target, where the origin of the block lies at
     /// `at` (m). The cross product of the two vectors along the face points to the same side as `up`, which is the

@@ -1,5 +1,5 @@
-//! Line and face contacts of two bounded solids: two parallel tubes, a tube on a head or on the face of a block, and a
-//! head on a head or on the face of a block.
+//! Line and face contacts of two bounded solids: two parallel tubes (capsules), a tube on a head or on the face of a
+//! block, and a head on a head or on the face of a block.
 //!
 //! All computations are scalar, as in [`closest`](super::closest).
 
@@ -142,7 +142,7 @@ pub(super) fn slopes(
             let (at, frame) = along(offset);
             shared(contactor, target, at, frame, normal).map(|flat| (offset, values(&flat)))
         };
-        // One-sided where the patch ends.
+        // A one-sided difference where the patch ends.
         let from = there(-HAIR).unwrap_or((0.0, here));
         let to = there(HAIR).unwrap_or((0.0, here));
         let length = if to.0 > from.0 { to.0 - from.0 } else { 1.0 };
@@ -155,7 +155,8 @@ pub(super) fn slopes(
         force: Vec3::new(x[value], y[value], z[value]),
         moment: Vec3::new(yz[value], zx[value], xy[value]),
     });
-    // Removes the contribution of the material points: the depth decreases as the contactor moves along the normal.
+    // Excludes the part due to the motion of the bodies at the middle: the depth decreases as the contactor moves along
+    // the normal.
     middle.force += flat.gap.normal;
     middle.moment += (flat.point - at).cross(flat.gap.normal);
     Slopes { middle, deepest, others }
@@ -167,7 +168,8 @@ fn side_by_side(target: &Capsule, tube: &Capsule, at: Vec3, direction: Vec3) -> 
     if sine_squared >= WIDEST * WIDEST {
         return None;
     }
-    // Measured along the contactor, which has the closest point: as the overlap ends, only its middle remains.
+    // Measured along the contactor, on which the closest point lies: as the overlap shrinks to a point, only its middle
+    // remains.
     let (least, most, radius) =
         overlap(tube.half_length, -at.dot(direction), target.half_length * direction.x.abs());
     if radius <= 0.0 {
