@@ -38,14 +38,14 @@ pub struct ContactPair {
 /// normals of contact and face is within [`Face::widest`](crate::body::Face::widest).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Counts {
-    /// All contacts count.
+    /// Counts all contacts.
     #[default]
     Everywhere,
-    /// Only contacts that belong to the contactor's face with this index count.
+    /// Counts only contacts that belong to the contactor's face with this index.
     BeforeFace(usize),
-    /// Only contacts that do not belong to the contactor's face with this index count.
+    /// Counts only contacts that do not belong to the contactor's face with this index.
     BehindFace(usize),
-    /// Only contacts that do not belong to the target's face with this index count.
+    /// Counts only contacts that do not belong to the target's face with this index.
     BehindFaceOfTarget(usize),
 }
 
@@ -75,8 +75,8 @@ pub struct Substepping<R> {
 /// Additional substepping rules for fast contacts of whole bodies ([`Nodes::Whole`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fast<R> {
-    /// Normal displacement (m) of a contact in a whole step above which the step is divided, since the spring and the
-    /// damper of the contact would otherwise engage or release too abruptly.
+    /// Displacement (m) along the contact normal during a whole step, above which the step is divided. Otherwise the
+    /// spring and the damper of the contact would engage or release too abruptly.
     pub whole_step_way: R,
     /// Approach speed (m/s) above which an impact counts as hard; the substeps are then half as long until no impact
     /// remains.

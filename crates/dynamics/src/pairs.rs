@@ -80,7 +80,7 @@ impl Foreign {
 /// target.
 pub type TellMeeting<'a> = dyn FnMut(&ContactPair, &[BodyId], &[BodyId]) + 'a;
 
-/// The pairs of two bodies in the list.
+/// Two bodies, and the range of their pairs in the list.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Couple {
     /// The two bodies, the lower ID first.

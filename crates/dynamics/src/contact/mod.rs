@@ -69,7 +69,7 @@ pub struct Interface<S: Space> {
     pub name: String,
     /// Normal law: compressive force from penetration and its rate.
     pub normal: NormalLaw<S::Real>,
-    /// Additional law that acts beyond the stroke of the normal law; `None` for an unlimited stroke.
+    /// Additional contact law that acts beyond the stroke of the normal law; `None` for an unlimited stroke.
     pub stop: Option<Stop<S::Real>>,
     /// Rolling resistance, if any.
     pub rolling: Option<Rolling<S::Real>>,

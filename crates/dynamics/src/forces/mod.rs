@@ -57,7 +57,7 @@ pub struct ContactTotals<R> {
 /// The energy ledger multiplies these forces by the displacement of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct Losses<S: Space> {
-    /// Dampers of contacts and elements.
+    /// Forces of the dampers of contacts and elements.
     pub damped: Wrench<S>,
     /// Friction, including the tangential damping of sticking contacts.
     pub friction: Wrench<S>,
@@ -102,8 +102,8 @@ pub struct Scratch<S: Space> {
     pub totals: ContactTotals<S::Real>,
     /// Loads of the force elements, in their order.
     pub loads: Vec<Load<S::Real>>,
-    /// Force and moment about the center of mass of every force from outside the model, in the order of
-    /// [`State::applied`].
+    /// For every force from outside the model, in the order of [`State::applied`]: the force, and its moment about the
+    /// center of mass of the body.
     pub applied: Vec<Wrench<S>>,
     /// Total force on every body from contacts, elements and outside the model, and its moment about the center of
     /// mass.
@@ -123,7 +123,7 @@ pub struct Scratch<S: Space> {
     pub evaluations: u64,
     /// Number of contact elements tested in all evaluations.
     pub contact_evaluations: u64,
-    /// Lanes that need substepping: at its current speed, some contact is predicted to exceed
+    /// Lanes that need substepping: at the current speeds, the penetration of some contact is predicted to exceed
     /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) within [`Scratch::lookahead`].
     pub(crate) needs_substeps: <S::Real as Real>::Mask,
     /// Lanes in which a predicted impact is [hard](crate::model::Fast::hard).

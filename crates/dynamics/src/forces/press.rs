@@ -213,7 +213,8 @@ struct Press<'a, S: Space, L> {
     /// Function that returns the contact laws of the pair. It is called once per contact, so that the compiler can
     /// specialize the loop for laws that are known at compile time.
     laws: L,
-    /// Time step (s) over which the effective forces are taken.
+    /// Time step (s) for the effective forces; see
+    /// [`NormalForce::within_step`](crate::contact::NormalForce::within_step).
     step: S::Real,
     frame: &'a PairFrame<S>,
     /// Relative kinematics of the pair, computed before the first node; computing them on demand would need a test at

@@ -48,7 +48,7 @@ pub enum Method {
     RungeKutta4,
     /// Bogacki–Shampine 3(2) with step control: three evaluations per step.
     BogackiShampine {
-        /// Largest local error (m) of a position, and of a velocity multiplied by the step.
+        /// Largest permitted local error (m) of a position, and of a velocity multiplied by the step.
         tolerance: f64,
     },
 }
@@ -136,8 +136,9 @@ impl<S: Space> Integrator<S> {
 
 /// Updates the element list; if it changed, renumbers the elements in `scratch`.
 ///
-/// The forces in `scratch` are kept. If they were evaluated again, with corrected velocities and the committed contact
-/// history, they would change. Then the list would affect the results and not only the speed.
+/// The forces in `scratch` are kept. If they were evaluated again, they would change, because the velocities have since
+/// been corrected and the contact history has been committed. Rebuilding the list would then affect the results, and
+/// not only the speed.
 fn refresh<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,

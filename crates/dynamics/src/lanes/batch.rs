@@ -12,7 +12,7 @@ use crate::state::State;
 
 use super::Lanewise;
 
-/// Type of a set of lanes: the mask of the scalar of a space.
+/// A set of lanes, as a mask.
 type MaskOf<S> = <<S as Space>::Real as Real>::Mask;
 
 /// A case that is ready to run: model, initial state, ground motion, time step and end time.

@@ -251,8 +251,8 @@ fn shared(
 /// contactor's side, the common unit normal out of the target, the distance (m) along the normal, and a weight from 0
 /// to 1.
 ///
-/// The weight vanishes where the common normal deviates strongly from the normal of the face. This is so for nearly
-/// parallel sides, which pass each other beside the faces.
+/// The weight vanishes where the common normal deviates strongly from the normal of the target's face. For example, it
+/// vanishes for two nearly parallel sides that pass each other beside the faces.
 fn crossing(
     resting: &Face,
     own: usize,

@@ -250,9 +250,9 @@ fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -
     }
 }
 
-/// Returns the contact line of a tube on a plane perpendicular to an axis. The plane is given by its height (m) along
-/// the axis and its rounding (m); the contact line follows a chord that is given by its middle and by half its length
-/// (m) along the tube.
+/// Returns the contact line of a tube on a flat face perpendicular to an axis. The face is given by the height (m) of
+/// its core along the axis, and by the rounding (m) that is added to this height. The part of the tube in front of the
+/// face is given by the position (m) of its middle along the tube and by half its length (m).
 fn on_plane(
     axis: Vec3,
     (height, rounding): (f64, f64),
@@ -311,11 +311,11 @@ fn head_on_block(
     head_on(axis, (block.half.dot(axis), block.rounding), middle, barrel, at, frame)
 }
 
-/// Returns the contact patch of a barrel's head on a plane perpendicular to an axis; the plane is given by its height
-/// (m) along the axis and its rounding (m).
+/// Returns the contact patch of a barrel's head on a flat face perpendicular to an axis. The face is given by the
+/// height (m) of its core along the axis, and by the rounding (m) that is added to this height.
 ///
-/// `middle` maps the position of the center of the head in the plane to the middle of the shared area and its extent
-/// (m).
+/// `middle` takes the position (m) of the center of the head in the plane of the face, and returns the middle of the
+/// shared area and its extent (m) from the middle.
 fn head_on(
     axis: Vec3,
     (height, rounding): (f64, f64),
