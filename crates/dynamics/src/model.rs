@@ -109,7 +109,7 @@ pub enum ModelError {
     /// Two bodies have the same name.
     #[error("two bodies are named \"{name}\": give each its own name")]
     DuplicateName {
-        /// The name.
+        /// The name of both bodies.
         name: String,
     },
     /// The mass of a free body is not positive or not finite.
@@ -150,9 +150,9 @@ pub enum ModelError {
     Dangling {
         /// Index of the pair, counted from 0.
         pair: usize,
-        /// Kind of the item.
+        /// Kind of the missing item.
         what: &'static str,
-        /// Index of the item.
+        /// Index of the missing item.
         index: usize,
         /// Number of existing items of this kind.
         count: usize,
@@ -355,7 +355,7 @@ impl<S: Space> Model<S> {
         self.gravity = gravity;
     }
 
-    /// Returns the body with a name.
+    /// Returns the body with the given name; `None` if there is no such body.
     pub fn body_named(&self, name: &str) -> Option<BodyId> {
         self.bodies.iter().position(|b| b.name == name)
     }

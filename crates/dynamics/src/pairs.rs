@@ -48,7 +48,7 @@ pub(crate) struct Foreign {
     /// For every party, its rank, and the index of its first interface. The party of the lower rank supplies the
     /// contact law.
     pub(crate) parties: Vec<(usize, InterfaceId)>,
-    /// Rules for contacts between contact kinds.
+    /// Rules for contacts between bodies of different parties.
     pub(crate) crossing: Arc<Crossing>,
     /// Number of pair indices that are reserved for each combination of two bodies.
     pub(crate) most: usize,
@@ -142,7 +142,7 @@ impl Pairs {
         Self::OfKinds { kinds, meetings, most }
     }
 
-    /// Returns the pair with a number.
+    /// Returns the pair with the given number.
     #[inline(always)]
     pub(crate) fn get(&self, index: usize) -> ContactPair {
         match self {

@@ -94,7 +94,7 @@ pub enum RunError {
     NotFinite {
         /// Time (s).
         time: f64,
-        /// The body.
+        /// Name of the body whose motion is not finite.
         body: String,
         /// Time step (s).
         time_step: f64,

@@ -145,7 +145,7 @@ fn square(half: f64) -> Mesh {
     (corners, vec![[0, 1, 2], [0, 2, 3]])
 }
 
-/// Returns the mesh of a block with sharp edges, from half its sides (m).
+/// Returns the mesh of a block with sharp edges, given half its side lengths (m).
 fn cuboid(half: Vec3) -> Mesh {
     let corner = |at: u32| {
         let side = |bit: u32| if at & bit == 0 { -1.0 } else { 1.0 };

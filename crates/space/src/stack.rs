@@ -39,7 +39,7 @@ pub struct Stack {
     pub stave_capacity: f64,
     /// Force elements of devices that will be attached when the stack is at rest.
     pub(crate) loose: Vec<Loose>,
-    /// The device of every element of the model.
+    /// Description of the device to which each element of the model belongs.
     pub(crate) devices: Vec<&'static Words>,
 }
 

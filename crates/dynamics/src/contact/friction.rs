@@ -27,10 +27,10 @@ pub enum FrictionLaw<R = f64> {
         static_coefficient: R,
         /// Kinetic coefficient `μ_k`.
         kinetic_coefficient: R,
-        /// `k_t` (N/m).
+        /// Tangential stiffness `k_t` (N/m).
         tangential_stiffness: R,
-        /// `c_t` (N·s/m); without this damping, a body that has stopped sliding would vibrate on the tangential spring
-        /// indefinitely.
+        /// Tangential damping `c_t` (N·s/m); without this damping, a body that has stopped sliding would vibrate on the
+        /// tangential spring indefinitely.
         tangential_damping: R,
     },
     /// Smoothed Coulomb friction: `f_t = μ fₙ v_t / √(v_t² + v_r²)`.
@@ -40,7 +40,7 @@ pub enum FrictionLaw<R = f64> {
     Regularized {
         /// Friction coefficient `μ`.
         coefficient: R,
-        /// `v_r` (m/s): the speed at which 71 % of the friction is reached.
+        /// Slip rate `v_r` (m/s) at which 71 % of the friction is reached.
         velocity: R,
     },
 }

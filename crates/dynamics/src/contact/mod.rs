@@ -58,7 +58,7 @@ impl Basis {
 pub struct Rolling<R = f64> {
     /// Lever arm (m).
     pub lever: R,
-    /// `ω₀` (rad/s): the spin at which 71 % of the moment is reached.
+    /// Relative spin `ω₀` (rad/s) at which 71 % of the moment is reached.
     pub spin: R,
 }
 

@@ -100,7 +100,7 @@ pub struct Scratch<S: Space> {
     pub pair_forces: Vec<PairForce<S>>,
     /// Total energies of the contacts.
     pub totals: ContactTotals<S::Real>,
-    /// Loads of the force elements, in their order.
+    /// Loads of the force elements, in the order of the elements.
     pub loads: Vec<Load<S::Real>>,
     /// For every force from outside the model, in the order of [`State::applied`]: the force, and its moment about the
     /// center of mass of the body.

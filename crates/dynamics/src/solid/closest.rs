@@ -203,7 +203,7 @@ struct Support {
     along: f64,
     /// Additional radius of curvature (m) in the direction `around`.
     across: f64,
-    /// The unit vector around the axis.
+    /// Unit vector in the circumferential direction.
     around: Vec3,
     /// Component β, perpendicular to the axis of the barrel, of the direction in which the support point lies.
     outward: f64,

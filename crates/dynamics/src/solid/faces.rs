@@ -29,7 +29,7 @@ pub(super) struct Vertex {
     pub(super) turning: Vec3,
 }
 
-/// The shared polygon of two blocks.
+/// The polygon that the faces of two blocks share.
 pub(super) struct Shared<const CORNERS: usize, const AXES: usize> {
     pub(super) vertices: [Option<Vertex>; CORNERS],
     /// Share of the contact that the polygon carries: 1 where a face of either block meets the other block, 0 where an
