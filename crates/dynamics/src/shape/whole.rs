@@ -137,8 +137,8 @@ pub struct Spread<S: Space> {
 /// mass (1/rad), stored in [`Wrench::moment`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes<S: Space> {
-    /// Derivative of the depth δ₀ (m) of the middle of the patch, without the part that is due to the motion of the two
-    /// bodies at this point.
+    /// Derivative of the depth δ₀ (m) at the middle of the patch, as far as it is due to the shift of the middle along
+    /// the bodies. The part that is due to the motion of the bodies themselves is excluded.
     pub middle: Wrench<S>,
     /// Derivative of `a`, the weight of the deepest point.
     pub deepest: Wrench<S>,
