@@ -4,7 +4,7 @@ use crate::body::{BodyId, Motion};
 use crate::model::Model;
 use crate::space::{Linear, Space, Wrench};
 
-/// Force and moment on a body, held until they are changed.
+/// Force and moment on a body, constant until they are replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Applied<S: Space> {
     /// The body.
@@ -33,15 +33,15 @@ pub enum ApplyError {
         "body \"{name}\" follows the ground, so a force does not move it: apply the force to a free body"
     )]
     Prescribed {
-        /// The body.
+        /// Name of the body.
         name: String,
     },
-    /// A number is not finite.
+    /// A component of the force, its point or its moment is not finite.
     #[error(
         "the force on body \"{name}\", its point or its moment is not finite: every component must be a finite number"
     )]
     NotFinite {
-        /// The body.
+        /// Name of the body.
         name: String,
     },
 }

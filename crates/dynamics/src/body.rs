@@ -97,7 +97,7 @@ pub enum Nodes<S: Space> {
     /// A single node at the point of a round boundary that is deepest in the target. The node moves along the boundary
     /// as the body rolls, so rolling is smooth.
     Rolling {
-        /// Center of the circle (m) in the body frame, from the center of mass.
+        /// Center of the circle (m) in the body frame, relative to the center of mass.
         center: S::Vector,
         /// Radius of the circle (m).
         radius: S::Real,

@@ -15,9 +15,9 @@ use crate::shape::{Surface, Whole};
 use crate::space::{Linear, Pose, Rotation3, Space, Spatial, Twist, Vec3};
 use crate::state::State;
 
-/// Slack (m) for changes of velocity within the lookahead time. An element may be missing from the list only if its gap
-/// exceeds the displacements predicted for the lookahead time by more than this slack. So the prediction of substeps
-/// does not depend on which elements are in the list.
+/// Slack (m) that is added to the displacements predicted for the lookahead time, since velocities change within this
+/// time. An element is missing from the list only if its gap exceeds the sum of the predicted displacements and the
+/// slack. So the prediction of substeps does not depend on which elements are in the list.
 const LOOKAHEAD_SLACK: f64 = 1e-3;
 
 /// Minimum allowance (m): every body may move at least this far before the list is rebuilt.
@@ -46,8 +46,8 @@ pub(crate) struct Group {
     pub(crate) end: usize,
 }
 
-/// Slack (m) for changes of velocity within a step: a group is skipped if its gap exceeds the displacements predicted
-/// for the step by more than this.
+/// Slack (m) that is added to the displacements predicted for a step, since velocities change within the step. A group
+/// is skipped if its gap exceeds the sum.
 const ASLEEP_SLACK: f64 = 2.0 * LOOKAHEAD_SLACK;
 
 /// The contact elements within reach, in the order in which their forces are summed.
@@ -243,8 +243,8 @@ impl<S: Space> ContactElements<S> {
         origins
     }
 
-    /// Returns the pairs of bodies whose bounding balls are no farther apart than the margins of the two bodies, in the
-    /// order of the model.
+    /// Enlarges the bounding ball of every body by its allowance, and returns the contact pairs of all bodies whose
+    /// enlarged balls overlap, in the order of the model.
     ///
     /// The bodies are sorted and swept along the first axis, so that the cost for a row of bodies is not quadratic.
     fn pairs_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
@@ -453,7 +453,8 @@ impl Moved {
 
 impl ContactElements<Spatial> {
     /// Returns the groups whose pairs exist in a new model as well. `number_of` maps the number of a pair to its number
-    /// in the new model, and `turn` rotates stick displacements and slip rates into the frame of the new model.
+    /// in the new model. `turn` rotates the displacements of the tangential springs and the slip rates into the frame
+    /// of the new model.
     pub(crate) fn moved(
         &self,
         slip_rates: &[Vec3],

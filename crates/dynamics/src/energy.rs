@@ -9,7 +9,7 @@ use crate::real::Real;
 use crate::space::{Linear, Pose, Space, Wrench};
 use crate::state::State;
 
-/// Energies (J) at one time, and works (J) from the start of the run to that time.
+/// Energies (J) at one time, and the work (J) done from the start of the run to that time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergySummary {
     /// Kinetic energy.
@@ -30,12 +30,13 @@ pub struct EnergySummary {
     pub ground_work: f64,
     /// Work of forces from outside the model.
     pub applied_work: f64,
-    /// Stored and lost energy, less the initial energy, the work of the ground and the work of forces from outside; zero
-    /// for an exact integration.
+    /// Stored and lost energy, minus the initial energy, the work of the ground and the work of forces from outside;
+    /// zero for an exact integration.
     pub residual: f64,
     /// Energy that has passed through the system so far: the absolute work of the ground and of forces from outside,
-    /// plus the energy available at the start (kinetic energy, energy of springs, and potential energy of the deepest
-    /// drop). The residual is stated as a fraction of the throughput.
+    /// plus the energy available at the start. The latter is the sum of the kinetic energy, the energy of springs, and
+    /// the potential energy relative to its lowest value so far. The residual is stated as a fraction of the
+    /// throughput.
     pub throughput: f64,
 }
 
@@ -49,14 +50,14 @@ impl EnergySummary {
 /// Energy balance of every lane, summed over the accepted steps of a run.
 ///
 /// The work of a force in a step is the displacement of the body, multiplied by the mean of the force at the start of
-/// the step and the force at its end. This is the discrete energy balance of the central difference method. Velocity
-/// Verlet satisfies this balance to rounding, except for the difference between the velocities at the ends and in the
-/// middle of a step, which does not accumulate. So a linear spring returns all its energy, and the works of dampers,
-/// friction and the ground are exact, however abruptly these forces set in.
+/// the step and the force at its end. This is the discrete energy balance of the central difference method. For
+/// velocity Verlet, the balance holds to rounding, apart from an error that does not accumulate: the velocities at the
+/// ends of a step differ from the velocity in its middle. So a linear spring returns all its energy, and the work of
+/// dampers, friction and the ground is exact, however abruptly these forces set in.
 ///
 /// The residual is the error of the time integration. Its sources are springs that engage or release within a step,
-/// nonlinear laws, and changes of geometry. Mistakes in the force laws also show in the residual: stored energies are
-/// computed from the state alone, so a residual remains if a force is not the derivative of its energy, or if the
+/// nonlinear force laws, and changes of geometry. Mistakes in the force laws also show in the residual: stored energies
+/// are computed from the state alone, so a residual remains if a force is not the derivative of its energy, or if the
 /// motion and the balance use different forces.
 #[derive(Clone, Debug)]
 pub struct EnergyLedger<S: Space> {
@@ -78,12 +79,12 @@ pub struct EnergyLedger<S: Space> {
     /// Spring forces of the force elements at the last accepted step (N).
     springs: Vec<S::Real>,
     stored: Stored<S::Real>,
-    /// Sum of the absolute works of the ground and of forces from outside.
+    /// Sum, over all steps, of the absolute work of the ground and of forces from outside.
     flow: S::Real,
     deepest: S::Real,
 }
 
-/// Works (J).
+/// Work (J) by cause, summed over the steps so far.
 #[derive(Clone, Copy, Debug, Default)]
 struct Works<R> {
     damped: R,
@@ -124,7 +125,7 @@ impl<S: Space> EnergyLedger<S> {
         }
     }
 
-    /// Adds the works of an accepted step, and updates the stored energies.
+    /// Adds the work done in an accepted step, and updates the stored energies.
     pub fn enter(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]

@@ -30,7 +30,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Returns the placement of this frame relative to `outer`, given both placements in the same frame.
+    /// Returns the placement of this frame relative to `outer`; both must be placements in the same frame.
     #[must_use]
     pub fn within(self, outer: Self) -> Self {
         let back = Self { at: Vec3::default(), azimuth: -outer.azimuth };
@@ -80,14 +80,13 @@ pub struct ContactKind {
     pub surfaces: usize,
 }
 
-/// Contact between bodies of two contact kinds.
+/// Rule for contact between bodies of two contact kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Rule {
     /// `true` if the body of the second contact kind is the contactor.
     pub reversed: bool,
-    /// Two indices of the contact law: one among the interfaces of the first body's party, and one among the interfaces
-    /// of the second body's party. The party that supplies the contact law ([`Party::rank`]) determines which of them
-    /// is used.
+    /// Index of the contact law among the interfaces of the first body's party, and its index among the interfaces of
+    /// the second body's party. The index of the party that supplies the contact law ([`Party::rank`]) is used.
     pub laws: [InterfaceId; 2],
 }
 
@@ -96,8 +95,8 @@ pub struct Rule {
 pub struct Crossing {
     /// The contact kinds.
     pub kinds: Vec<ContactKind>,
-    /// Rule for every two contact kinds, indexed first by the contact kind of the body that comes first in the joined
-    /// model; `None` if bodies of these kinds never touch.
+    /// Rule for each combination of two contact kinds, indexed first by the contact kind of the body that comes first
+    /// in the joined model; `None` if bodies of these kinds never touch.
     pub rules: Vec<Vec<Option<Rule>>>,
 }
 
@@ -298,7 +297,8 @@ pub fn carry(
         return Running { state, scratch, stepper };
     }
     if !whole {
-        // Only the energy of all contacts of a source is known, not that of the contacts that were carried over.
+        // The totals of a source include contacts that are not carried over, so the energy of the contacts is evaluated
+        // anew.
         let mut anew = scratch.clone();
         evaluate(model, &state, &mut anew);
         scratch.totals = anew.totals;

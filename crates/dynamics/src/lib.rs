@@ -9,12 +9,13 @@
 //! 2. For each pair of nearby boundaries and each node of the contactor, the distance from the target's surface and the
 //!    normal are computed.
 //! 3. The normal law turns penetration and its rate into a compressive force.
-//! 4. The friction law turns slip rate and stick displacement into a tangential force.
+//! 4. The friction law turns slip rate and displacement of the tangential spring into a tangential force.
 //! 5. The force acts on both bodies at one point: the middle of the overlap, or the companion point of a fixed node.
 //! 6. The sum of the forces of contacts, force elements, gravity and viscous damping gives the accelerations
 //!    ([`evaluate`]).
-//! 7. The integrator repeats 1 to 6 as its method requires and advances poses, twists and stick displacements.
-//! 8. Once the step is accepted, every stick displacement is limited to the friction capacity.
+//! 7. The integrator repeats 1 to 6 as its method requires and advances poses, twists and displacements of the
+//!    tangential springs.
+//! 8. Once the step is accepted, the displacement of every tangential spring is limited to the friction capacity.
 //! 9. The energy ledger and the observers receive the accepted state.
 //!
 //! # Signs

@@ -38,14 +38,14 @@ pub struct ContactPair {
 /// normals of contact and face is within [`Face::widest`](crate::body::Face::widest).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Counts {
-    /// All contacts count.
+    /// Counts all contacts.
     #[default]
     Everywhere,
-    /// Only contacts that belong to the contactor's face with this index count.
+    /// Counts only contacts that belong to the contactor's face with this index.
     BeforeFace(usize),
-    /// Only contacts that do not belong to the contactor's face with this index count.
+    /// Counts only contacts that do not belong to the contactor's face with this index.
     BehindFace(usize),
-    /// Only contacts that do not belong to the target's face with this index count.
+    /// Counts only contacts that do not belong to the target's face with this index.
     BehindFaceOfTarget(usize),
 }
 
@@ -75,8 +75,8 @@ pub struct Substepping<R> {
 /// Additional substepping rules for fast contacts of whole bodies ([`Nodes::Whole`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fast<R> {
-    /// Normal displacement (m) of a contact in a whole step above which the step is divided, since the spring and the
-    /// damper of the contact would otherwise engage or release too abruptly.
+    /// Displacement (m) along the contact normal during a whole step, above which the step is divided. Otherwise the
+    /// spring and the damper of the contact would engage or release too abruptly.
     pub whole_step_way: R,
     /// Approach speed (m/s) above which an impact counts as hard; the substeps are then half as long until no impact
     /// remains.
@@ -109,24 +109,24 @@ pub enum ModelError {
     /// Two bodies have the same name.
     #[error("two bodies are named \"{name}\": give each its own name")]
     DuplicateName {
-        /// The name.
+        /// The name of both bodies.
         name: String,
     },
-    /// A free body has no mass.
+    /// The mass of a free body is not positive or not finite.
     #[error("body \"{name}\" has mass {mass} kg: a free body needs a positive, finite mass")]
     Mass {
-        /// The body.
+        /// Name of the body.
         name: String,
         /// Mass (kg) of the body.
         mass: f64,
     },
-    /// A free body has no moment of inertia.
+    /// The moment of inertia of a free body is not positive or not finite.
     #[error(
         "body \"{name}\" has a moment of inertia of {inertia} kg·m²: a free body needs a positive, \
          finite moment of inertia"
     )]
     Inertia {
-        /// The body.
+        /// Name of the body.
         name: String,
         /// Smallest principal moment of inertia (kg·m²) of the body.
         inertia: f64,
@@ -134,13 +134,13 @@ pub enum ModelError {
     /// A free body has an unbounded surface.
     #[error("body \"{name}\" has an unbounded surface but is free: fix the body to the ground")]
     Unbounded {
-        /// The body.
+        /// Name of the body.
         name: String,
     },
     /// A force element is invalid.
     #[error("element \"{name}\": {problem}")]
     Element {
-        /// The element.
+        /// Name of the element.
         name: String,
         /// The problem.
         problem: &'static str,
@@ -150,9 +150,9 @@ pub enum ModelError {
     Dangling {
         /// Index of the pair, counted from 0.
         pair: usize,
-        /// Kind of the item.
+        /// Kind of the missing item.
         what: &'static str,
-        /// Index of the item.
+        /// Index of the missing item.
         index: usize,
         /// Number of existing items of this kind.
         count: usize,
@@ -355,7 +355,7 @@ impl<S: Space> Model<S> {
         self.gravity = gravity;
     }
 
-    /// Returns the body with a name.
+    /// Returns the body with the given name; `None` if there is no such body.
     pub fn body_named(&self, name: &str) -> Option<BodyId> {
         self.bodies.iter().position(|b| b.name == name)
     }

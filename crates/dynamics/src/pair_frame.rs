@@ -1,4 +1,5 @@
-//! Relative pose of two bodies in the frame of a surface, and a filter that selects their contacts by a face.
+//! Relative pose of two bodies in the frame of a surface, and a filter that selects their contacts by the position
+//! relative to a face.
 
 use crate::model::{ContactPair, Counts, Model};
 use crate::real::{Mask, Real};
@@ -21,7 +22,7 @@ pub(crate) struct PairFrame<S: Space> {
     placed: S::Rotation,
 }
 
-/// Filter that selects the contacts of a pair by a face, as [`Counts`] requires.
+/// Filter that selects the contacts of a pair by their position relative to a face, as [`Counts`] requires.
 #[derive(Clone, Copy)]
 pub(crate) struct AtFace<S: Space> {
     /// Lanes in which the other body's center of mass lies in front of the face.

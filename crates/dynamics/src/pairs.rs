@@ -14,7 +14,7 @@ pub(crate) enum Pairs {
     Listed {
         /// The pairs.
         pairs: Vec<ContactPair>,
-        /// For every two bodies that can touch, the range of their pairs, in order.
+        /// Ranges of the pairs that have the same two bodies, in order.
         couples: Vec<Couple>,
     },
     /// The pairs of two bodies depend only on the kinds of the bodies. So no list of all pairs is stored; its length
@@ -25,7 +25,7 @@ pub(crate) enum Pairs {
         /// The pairs of two bodies, indexed by the kind of the body with the lower ID and then by the kind of the other
         /// body. In these pairs, the body with the lower ID is number 0 and the other body is number 1.
         meetings: Vec<Vec<Vec<ContactPair>>>,
-        /// Number of pair indices that are reserved for every two bodies.
+        /// Number of pair indices that are reserved for each combination of two bodies.
         most: usize,
     },
     /// The pairs within each party are stored. The pairs between parties are derived from the contact kinds of the
@@ -48,9 +48,9 @@ pub(crate) struct Foreign {
     /// For every party, its rank, and the index of its first interface. The party of the lower rank supplies the
     /// contact law.
     pub(crate) parties: Vec<(usize, InterfaceId)>,
-    /// Rules for contacts between contact kinds.
+    /// Rules for contacts between bodies of different parties.
     pub(crate) crossing: Arc<Crossing>,
-    /// Number of pair indices that are reserved for every two bodies.
+    /// Number of pair indices that are reserved for each combination of two bodies.
     pub(crate) most: usize,
 }
 
@@ -80,7 +80,7 @@ impl Foreign {
 /// target.
 pub type TellMeeting<'a> = dyn FnMut(&ContactPair, &[BodyId], &[BodyId]) + 'a;
 
-/// The pairs of two bodies in the list.
+/// Two bodies, and the range of their pairs in the list.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Couple {
     /// The two bodies, the lower ID first.
@@ -142,7 +142,7 @@ impl Pairs {
         Self::OfKinds { kinds, meetings, most }
     }
 
-    /// Returns the pair with a number.
+    /// Returns the pair with the given number.
     #[inline(always)]
     pub(crate) fn get(&self, index: usize) -> ContactPair {
         match self {

@@ -94,7 +94,7 @@ pub enum RunError {
     NotFinite {
         /// Time (s).
         time: f64,
-        /// The body.
+        /// Name of the body whose motion is not finite.
         body: String,
         /// Time step (s).
         time_step: f64,
@@ -324,8 +324,8 @@ impl<S: Space<Real = f64>> Stepper<S> {
         Ok(())
     }
 
-    /// Sets the force from outside the model on a body; it replaces an earlier force on this body. The force is held
-    /// during the next steps; setting force and moment to zero removes it.
+    /// Sets the force from outside the model on a body; it replaces an earlier force on this body. The force stays
+    /// constant during the next steps; setting force and moment to zero removes it.
     ///
     /// Only the difference from the earlier force is added to the forces of the current state. So if the same force is
     /// set again, the results are bit-identical.

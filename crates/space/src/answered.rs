@@ -24,7 +24,7 @@ use crate::words;
 /// Results of a scenario that is simulated in planes or in three dimensions.
 #[derive(Clone, Debug)]
 pub enum AnyAnswer {
-    /// Results in one plane or in both.
+    /// Results in one or both vertical planes.
     Planes(Box<variants::Answer>),
     /// Results in three dimensions.
     Space(Box<Answer>),

@@ -27,14 +27,14 @@ pub(crate) struct Builder<'a> {
     /// Description of every body, in the order of the body IDs.
     pub(crate) parts: Vec<Part>,
     pub(crate) laws: Laws,
-    /// Elements that will be fitted to the stack at rest.
+    /// Force elements that will be attached when the stack is at rest.
     pub(crate) loose: Vec<Loose>,
     /// Elements that already act while the stack is settled, because it would not stand without them; each with the
     /// description of its device.
     pub(crate) held: Vec<(Element<Spatial>, &'static Words)>,
     /// Contact pairs of the ground with the bearings of platforms.
     pub(crate) bearings: Vec<ContactPair>,
-    /// Height (m) by which devices under the stack, such as isolators, raised it.
+    /// Height (m) by which devices under the stack, such as isolators, raise it.
     pub(crate) raised: f64,
 }
 

@@ -57,7 +57,7 @@ impl Sight {
         }
     }
 
-    /// Returns `true` if a motion in the direction `heading` is labeled in this view. Each such event is labeled in
+    /// Returns `true` if this view shows the label of a motion in the direction `heading`. Each motion is labeled in
     /// exactly one view.
     fn shows(self, heading: Heading) -> bool {
         match self {

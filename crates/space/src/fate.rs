@@ -102,7 +102,7 @@ pub struct PeakMotion {
 }
 
 impl PeakMotion {
-    /// Returns the larger of the displacements, slips and tilts of two spans of time.
+    /// Returns, for the displacement, the slip and the tilt, the larger of the maxima in two spans of time.
     #[must_use]
     pub fn or_larger(mut self, other: Self) -> Self {
         self.raise(other.displacement, other.slip, other.tilt);

@@ -45,7 +45,7 @@ pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stac
     })
 }
 
-/// Returns the contact pairs between the solids of every two bodies for which an interface is given, unless both bodies
+/// Returns the contact pairs between the solids of any two bodies for which an interface is given, unless both bodies
 /// are fixed. Each pair occurs once.
 fn pairs(scene: &SpatialScene, bodies: &[Body<Spatial>]) -> Vec<ContactPair> {
     let mut list = Vec::new();

@@ -50,7 +50,8 @@ impl Ground {
         let recorded = matches!(motion.source, MotionSource::Record(_));
         if recorded && second.is_none() {
             warnings.push(
-                "the record has only one horizontal component: the ground does not move at a right angle to it"
+                "the record has only one horizontal component: the ground does not move in the other horizontal \
+                 direction"
                     .to_owned(),
             );
         }

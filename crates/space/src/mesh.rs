@@ -145,7 +145,7 @@ fn square(half: f64) -> Mesh {
     (corners, vec![[0, 1, 2], [0, 2, 3]])
 }
 
-/// Returns the mesh of a block with sharp edges, from half its sides (m).
+/// Returns the mesh of a block with sharp edges, given half its side lengths (m).
 fn cuboid(half: Vec3) -> Mesh {
     let corner = |at: u32| {
         let side = |bit: u32| if at & bit == 0 { -1.0 } else { 1.0 };
@@ -157,8 +157,8 @@ fn cuboid(half: Vec3) -> Mesh {
     ((0..8).map(corner).collect(), triangles.collect())
 }
 
-/// Returns the profile of a tube with round ends, from pole to pole, as positions (m) along the axis and distances (m)
-/// from the axis; `quarter` is the number of steps per quarter circle.
+/// Returns the profile of a cylinder with hemispherical ends, from pole to pole, as positions (m) along the axis and
+/// distances (m) from the axis; `quarter` is the number of steps per quarter circle.
 fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
     let step = FRAC_PI_2 / f64::from(quarter);
     let end = |side: f64, at: u32| {

@@ -18,8 +18,8 @@ pub type Motions<'a> = (&'a [Pose<Spatial>], &'a [Twist<Spatial>]);
 #[derive(Clone, Debug)]
 pub struct Rest {
     stack: Arc<Stack>,
-    /// Times (s) from which the ground is still (`still_from`) and nearly still (`calm_from`); infinite if the run does
-    /// not end by rest.
+    /// Times (s) from which the ground is still (`still_from`) and nearly still (`calm_from`); infinite if the run
+    /// always lasts for its full duration.
     still_from: f64,
     calm_from: f64,
     /// Kinetic energy per mass (m²/s²) below which a body counts as at rest.
@@ -58,7 +58,7 @@ impl Rest {
         (1..self.stack.parts.len()).filter(move |body| self.is_fast(bodies, *body))
     }
 
-    /// Counts the time at rest anew from a time (s), for a stack that is set in motion again.
+    /// Restarts the count of the time at rest at a time (s), for a stack that is set in motion again.
     pub fn wake(&mut self, time: f64) {
         self.moved = time;
     }

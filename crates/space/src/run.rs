@@ -234,8 +234,8 @@ impl Run {
     }
 }
 
-/// Smallest slip with which a rack that tilts along the barrels counts as having slid off, as a fraction of
-/// [`Stack::reach`]. The value is a convention.
+/// Slip along the barrels, as a fraction of [`Stack::reach`], above which a rack that tilts in this direction counts as
+/// having slid off. The value is a convention.
 const SLID_BEFORE_IT_TILTED: f64 = 0.5;
 
 /// Returns the outcome of a run. As in the plane models, the outcome depends on the first body that left its seat; only

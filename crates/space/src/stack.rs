@@ -37,9 +37,9 @@ pub struct Stack {
     pub reach: [f64; 2],
     /// Vertical force (N) that the staves of a barrel can bear between two racks; zero for a free scene.
     pub stave_capacity: f64,
-    /// Elements of devices that will be fitted when the stack is at rest.
+    /// Force elements of devices that will be attached when the stack is at rest.
     pub(crate) loose: Vec<Loose>,
-    /// The device of every element of the model.
+    /// Description of the device to which each element of the model belongs.
     pub(crate) devices: Vec<&'static Words>,
 }
 

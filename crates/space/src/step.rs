@@ -62,8 +62,8 @@ fn adapts(method: Method) -> bool {
 }
 
 /// Returns the largest ratio of a contact constant (stiffness or damping) to the effective mass of a body, over all
-/// contact pairs and their free bodies. The effective mass accounts for rotation about the center of mass with the
-/// longest lever.
+/// contact pairs and their free bodies. The effective mass accounts for rotation about the center of mass, with the
+/// longest lever arm of any contact.
 ///
 /// A body may have contacts both below and above, so every constant counts twice.
 fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f64 {
@@ -119,8 +119,8 @@ fn contacts(nodes: &Nodes<Spatial>) -> f64 {
     }
 }
 
-/// Divides the square of the longest lever by the moment of inertia, for each principal axis of a body, and returns the
-/// largest result (1/kg).
+/// Divides the square of the longest lever arm by the moment of inertia, for each principal axis of a body, and returns
+/// the largest result (1/kg).
 fn turned(body: &Body<Spatial>) -> f64 {
     let upright = Rotation3::identity();
     let mut most: Vec3 = Vec3::default();

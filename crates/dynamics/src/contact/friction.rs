@@ -13,8 +13,8 @@ pub enum FrictionLaw<R = f64> {
     /// Coulomb friction with elastic sticking: a tangential spring deforms before the contact slides.
     ///
     /// ```text
-    /// spring  = k_t s            held within ± μ fₙ
-    /// f_t     = spring + c_t v_t held within ± μ fₙ
+    /// spring  = k_t s            limited to ± μ fₙ
+    /// f_t     = spring + c_t v_t limited to ± μ fₙ
     /// ```
     ///
     /// `s` is the displacement of the spring. It is integrated like any other coordinate of the state; its rate of
@@ -27,10 +27,10 @@ pub enum FrictionLaw<R = f64> {
         static_coefficient: R,
         /// Kinetic coefficient `μ_k`.
         kinetic_coefficient: R,
-        /// `k_t` (N/m).
+        /// Tangential stiffness `k_t` (N/m).
         tangential_stiffness: R,
-        /// `c_t` (N·s/m); without this damping, a body that has stopped sliding would vibrate on the tangential spring
-        /// indefinitely.
+        /// Tangential damping `c_t` (N·s/m); without this damping, a body that has stopped sliding would vibrate on the
+        /// tangential spring indefinitely.
         tangential_damping: R,
     },
     /// Smoothed Coulomb friction: `f_t = μ fₙ v_t / √(v_t² + v_r²)`.
@@ -40,7 +40,7 @@ pub enum FrictionLaw<R = f64> {
     Regularized {
         /// Friction coefficient `μ`.
         coefficient: R,
-        /// `v_r` (m/s): the speed at which 71 % of the friction is reached.
+        /// Slip rate `v_r` (m/s) at which 71 % of the friction is reached.
         velocity: R,
     },
 }
@@ -116,8 +116,8 @@ impl<R: Real> FrictionLaw<R> {
         }
     }
 
-    /// Returns the creep speed (m/s) of a body under a steady tangential force that is `share` of the friction limit (0
-    /// ≤ share < 1); zero for all laws except [`FrictionLaw::Regularized`].
+    /// Returns the creep speed (m/s) of a body under a steady tangential force, given as the fraction `share` of the
+    /// friction limit (0 ≤ share < 1); zero for all laws except [`FrictionLaw::Regularized`].
     pub fn creep_speed(&self, share: f64) -> R {
         match *self {
             Self::Frictionless | Self::Coulomb { .. } => R::zero(),

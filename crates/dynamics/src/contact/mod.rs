@@ -14,9 +14,8 @@ pub use normal::{Exponent, NormalForce, NormalLaw, Stop};
 ///
 /// With constants per node, a boundary with more nodes makes the interface stiffer, so the number of nodes is part of
 /// the physics. Candia, de la Llera and Almazán (2008) state constants per node. With constants per length, each node
-/// acts for its tributary length, so results converge as the number of nodes grows. With constants per seat, the
-/// touching nodes of a row share one set of constants, so their number affects the location of the force but not the
-/// stiffness.
+/// acts for its tributary length, so results converge as the number of nodes grows. With constants per seat, a row of
+/// touching nodes has one set of constants. So the number of nodes affects where the force acts, but not the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Basis {
     /// Constants per node (N/m, N·s/m).
@@ -54,12 +53,12 @@ impl Basis {
 
 /// Rolling resistance: a moment that opposes the relative spin ω of two bodies.
 ///
-/// The moment is the product of the normal force, a lever and `ω / √(ω² + ω₀²)`.
+/// The moment is the product of the normal force, a lever arm (m) and `ω / √(ω² + ω₀²)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rolling<R = f64> {
-    /// The lever (m).
+    /// Lever arm (m).
     pub lever: R,
-    /// `ω₀` (rad/s): the spin at which 71 % of the moment is reached.
+    /// Relative spin `ω₀` (rad/s) at which 71 % of the moment is reached.
     pub spin: R,
 }
 
@@ -70,7 +69,7 @@ pub struct Interface<S: Space> {
     pub name: String,
     /// Normal law: compressive force from penetration and its rate.
     pub normal: NormalLaw<S::Real>,
-    /// Additional law that acts beyond the stroke of the normal law; `None` for an unlimited stroke.
+    /// Additional contact law that acts beyond the stroke of the normal law; `None` for an unlimited stroke.
     pub stop: Option<Stop<S::Real>>,
     /// Rolling resistance, if any.
     pub rolling: Option<Rolling<S::Real>>,

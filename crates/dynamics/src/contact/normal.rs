@@ -16,30 +16,31 @@ pub enum NormalLaw<R = f64> {
     /// The rebound is elastic, so all dissipation happens on approach (Candia, de la Llera and Almazán 2008, eq. 2.6).
     /// When contact begins, the force jumps to `c δ̇`.
     SpeedGap {
-        /// `k` (N/m).
+        /// Stiffness `k` (N/m).
         stiffness: R,
-        /// `c` (N·s/m).
+        /// Damping `c` (N·s/m).
         damping: R,
     },
     /// Linear spring in parallel with a damper that acts on approach and on separation; the force is zero where it
     /// would otherwise be tensile: `fₙ = max(0, k δ + c δ̇)`.
     KelvinVoigt {
-        /// `k` (N/m).
+        /// Stiffness `k` (N/m).
         stiffness: R,
-        /// `c` (N·s/m).
+        /// Damping `c` (N·s/m).
         damping: R,
     },
     /// `fₙ = max(0, k δⁿ (1 + d δ̇))`: the force is zero at the start and at the end of contact (Hunt and Crossley
     /// 1975).
     HuntCrossley {
-        /// `k` (N/mⁿ).
+        /// Stiffness `k` (N/mⁿ).
         stiffness: R,
-        /// `d` (s/m).
+        /// Dissipation constant `d` (s/m).
         dissipation: R,
-        /// `n`.
+        /// Exponent `n`.
         exponent: Exponent,
     },
-    /// Law with a prescribed coefficient of restitution `e`, independent of the mass and, well above `v`, of the speed:
+    /// Law with a prescribed coefficient of restitution `e`, which depends neither on the mass nor, at speeds well
+    /// above `v`, on the speed:
     ///
     /// ```text
     /// fₙ = k δ^(3/2) (1 + e² + (1 − e²) s) / 2      s = δ̇ / √(δ̇² + v²)
@@ -51,16 +52,16 @@ pub enum NormalLaw<R = f64> {
     /// the force is that of a spring and a damper, so bodies come to rest. The spring stiffens as between round bodies
     /// (Hertz), so the contact of a light body at rest is soft, and a heavy body is stopped within millimeters.
     Rebound {
-        /// `k` (N/m^1.5).
+        /// Stiffness `k` (N/m^1.5).
         stiffness: R,
-        /// `e`: speed after the impact divided by speed before the impact.
+        /// Coefficient of restitution `e`: speed after the impact divided by speed before the impact.
         restitution: R,
-        /// `v` (m/s): penetration rate below which the law acts like a spring and a damper.
+        /// Penetration rate `v` (m/s) below which the law acts like a spring and a damper.
         speed: R,
     },
     /// `fₙ = k δ^(3/2)`, elastic (Hertz 1882; for spheres `k = 4/3 E* √r`).
     Hertz {
-        /// `k` (N/m^1.5).
+        /// Stiffness `k` (N/m^1.5).
         stiffness: R,
     },
 }

@@ -69,8 +69,9 @@ impl<S: Space> Guide<S> {
         }
     }
 
-    /// Adapts a fitted guide to a first body that turns about the axis of the guide. Only the component of `place`
-    /// along the axis is kept, and `reach` is increased by the distance of the point from the axis.
+    /// Adapts a guide, after its position at rest has been set, to a first body that turns about the axis of the guide.
+    /// Only the component of `place` along the axis is kept, and `reach` is increased by the distance of the point from
+    /// the axis.
     #[must_use]
     pub fn about_axis(self) -> Self {
         let along = self.axis * self.axis.dot(self.place);

@@ -78,7 +78,7 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => &element.link),* }
             }
 
-            /// Returns the link for changes.
+            /// Returns a mutable reference to the link.
             pub(crate) fn link_mut(&mut self) -> &mut Link<S> {
                 match self { $(Self::$kind(element) => &mut element.link),* }
             }

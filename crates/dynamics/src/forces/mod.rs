@@ -57,7 +57,7 @@ pub struct ContactTotals<R> {
 /// The energy ledger multiplies these forces by the displacement of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct Losses<S: Space> {
-    /// Dampers of contacts and elements.
+    /// Forces of the dampers of contacts and elements.
     pub damped: Wrench<S>,
     /// Friction, including the tangential damping of sticking contacts.
     pub friction: Wrench<S>,
@@ -73,9 +73,9 @@ impl<S: Space> Default for Losses<S> {
 
 /// Total contact force of one pair.
 ///
-/// Where one contact is divided between two corners, its stored energy changes as the shares of the corners change. To
-/// close the energy balance, the total includes an additional force along the side. So the total may differ from the
-/// sum of the contact forces.
+/// A contact near the end of a side may be divided between a corner of each body. As the bodies slide along each other,
+/// the shares of the corners change, and with them the stored energy. The total includes the force along the side that
+/// corresponds to this change of energy, so it may differ from the sum of the contact forces.
 #[derive(Clone, Copy, Debug)]
 pub struct PairForce<S: Space> {
     /// Index of the pair in the model.
@@ -100,10 +100,10 @@ pub struct Scratch<S: Space> {
     pub pair_forces: Vec<PairForce<S>>,
     /// Total energies of the contacts.
     pub totals: ContactTotals<S::Real>,
-    /// Loads of the force elements, in their order.
+    /// Loads of the force elements, in the order of the elements.
     pub loads: Vec<Load<S::Real>>,
-    /// Force and moment about the center of mass of every force from outside the model, in the order of
-    /// [`State::applied`].
+    /// For every force from outside the model, in the order of [`State::applied`]: the force, and its moment about the
+    /// center of mass of the body.
     pub applied: Vec<Wrench<S>>,
     /// Total force on every body from contacts, elements and outside the model, and its moment about the center of
     /// mass.
@@ -116,14 +116,14 @@ pub struct Scratch<S: Space> {
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
     pub rotations: Vec<S::Rotation>,
-    /// Rate of change (m/s) of every stick displacement: the slip rate, plus the rate at which the rotation of the
-    /// bodies turns the displacement; zero without contact.
+    /// Rate of change (m/s) of the displacement of every tangential spring: the slip rate, plus the rate at which the
+    /// rotation of the bodies turns the displacement; zero without contact.
     pub slip_rates: Vec<S::Tangent>,
     /// Number of force evaluations.
     pub evaluations: u64,
     /// Number of contact elements tested in all evaluations.
     pub contact_evaluations: u64,
-    /// Lanes that need substepping: at its current speed, some contact is predicted to exceed
+    /// Lanes that need substepping: at the current speeds, the penetration of some contact is predicted to exceed
     /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) within [`Scratch::lookahead`].
     pub(crate) needs_substeps: <S::Real as Real>::Mask,
     /// Lanes in which a predicted impact is [hard](crate::model::Fast::hard).
@@ -155,7 +155,8 @@ pub struct Pressed<S: Space> {
     pub touching: <S::Real as Real>::Mask,
     /// Point (m) at which the force acts, in the frame of the target's surface.
     pub point: S::Vector,
-    /// Tangent plane of the contact, which is stored in the contact history together with the stick displacement.
+    /// Tangent plane of the contact, which is stored in the contact history together with the displacement of the
+    /// tangential spring.
     tangent_plane: S::TangentPlane,
     /// Compressive force (N); zero in lanes without contact.
     pub normal_force: S::Real,
@@ -381,8 +382,8 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
     }
 }
 
-/// Accepts the state that `scratch` was evaluated at: limits every stick displacement to the friction capacity, resets
-/// elements without contact, and breaks force elements that fail.
+/// Accepts the state that `scratch` was evaluated at: limits the displacement of every tangential spring to the
+/// friction capacity, resets elements without contact, and breaks force elements that fail.
 pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
     commit_corrected(
         model,
@@ -393,8 +394,8 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
     );
 }
 
-/// Accepts the state as [`commit`] does, with corrected stick displacements: `corrected` maps the index of an element
-/// and its stick displacement (m) to the displacement (m) that is accepted.
+/// Accepts the state as [`commit`] does, with corrected displacements of the tangential springs: `corrected` maps the
+/// index of an element and the displacement (m) of its spring to the displacement (m) that is accepted.
 pub(crate) fn commit_corrected<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,

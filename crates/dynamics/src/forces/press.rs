@@ -23,8 +23,8 @@ use row::{Row, counting};
 
 /// Adds the contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
-/// For bundles of lanes in two dimensions, the speed-gap law with Coulomb friction has a loop of its own, without
-/// dispatch per contact. For scalars such a loop would not be faster, and in three dimensions it would take long to
+/// For several lanes in two dimensions, the speed-gap law with Coulomb friction has a loop of its own, without dispatch
+/// per contact. For a single run such a loop would not be faster, and in three dimensions it would take long to
 /// compile.
 #[inline(always)]
 pub(super) fn touch<S: Space>(
@@ -213,7 +213,8 @@ struct Press<'a, S: Space, L> {
     /// Function that returns the contact laws of the pair. It is called once per contact, so that the compiler can
     /// specialize the loop for laws that are known at compile time.
     laws: L,
-    /// Time step (s) over which the effective forces are taken.
+    /// Time step (s) for the effective forces; see
+    /// [`NormalForce::within_step`](crate::contact::NormalForce::within_step).
     step: S::Real,
     frame: &'a PairFrame<S>,
     /// Relative kinematics of the pair, computed before the first node; computing them on demand would need a test at
@@ -375,8 +376,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 
     /// Adds the forces of a node at `node` (m) whose contact the filter accepts.
     ///
-    /// The laws are evaluated at the depth `shared` (m) of the row of nodes, if given, and otherwise at the depth of
-    /// the node itself.
+    /// The contact laws are evaluated at the depth `shared` (m) of the row of nodes, if given, and otherwise at the
+    /// depth of the node itself.
     #[inline(always)]
     fn press(
         &mut self,
@@ -430,7 +431,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Returns the friction force (N) and the tangent plane of an element, given its normal force (N) and weight. Also
     /// stores the energy and the rate of its tangential spring.
     ///
-    /// Stick displacements are stored in the inertial frame, so both bodies are treated alike.
+    /// The displacement of the spring is stored in the inertial frame, so both bodies are treated alike.
     #[inline(always)]
     fn friction(
         &mut self,
@@ -452,8 +453,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     }
 }
 
-/// Returns the node (m) of a round piece about `center`, placed so that the force acts midway between the two
-/// boundaries. So the result does not change if the bodies are exchanged.
+/// Returns the position (m) of the node of a round piece about `center`, chosen so that the force acts midway between
+/// the two boundaries. So the result does not change if the bodies are exchanged.
 #[inline(always)]
 fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vector {
     center - gap.normal * (radius - gap.distance * S::Real::splat(0.5))

@@ -1,8 +1,8 @@
 //! Time integration: from one accepted state to the next.
 //!
 //! Every method starts with the forces of the initial state in `scratch`, and leaves the forces of the accepted state
-//! there. Stick displacements are advanced by their rates like every other coordinate; the contact history is committed
-//! only when a state is accepted.
+//! there. The displacements of the tangential springs are advanced by their rates like every other coordinate; the
+//! contact history is committed only when a state is accepted.
 
 mod runge_kutta;
 mod verlet;
@@ -48,7 +48,7 @@ pub enum Method {
     RungeKutta4,
     /// Bogacki–Shampine 3(2) with step control: three evaluations per step.
     BogackiShampine {
-        /// Largest local error (m) of a position, and of a velocity multiplied by the step.
+        /// Largest permitted local error (m) of a position, and of a velocity multiplied by the step.
         tolerance: f64,
     },
 }
@@ -136,8 +136,9 @@ impl<S: Space> Integrator<S> {
 
 /// Updates the element list; if it changed, renumbers the elements in `scratch`.
 ///
-/// The forces in `scratch` are kept. If they were evaluated again, with corrected velocities and the committed contact
-/// history, they would change. Then the list would affect the results and not only the speed.
+/// The forces in `scratch` are kept. If they were evaluated again, they would change, because the velocities have since
+/// been corrected and the contact history has been committed. Rebuilding the list would then affect the results, and
+/// not only the speed.
 fn refresh<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -173,7 +174,7 @@ fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>
     forces::commit(model, state, scratch);
 }
 
-/// Adds a multiple of the slip rates to the stick displacements.
+/// Adds the slip rates, multiplied by a time (s), to the displacements of the tangential springs.
 #[inline(always)]
 fn advance_sticks<S: Space>(state: &mut State<S>, slip_rates: &[S::Tangent], time: S::Real) {
     for (stick, rate) in state.contact_elements.sticks.iter_mut().zip(slip_rates) {

@@ -41,8 +41,8 @@ pub(super) static BOGACKI_SHAMPINE: Tableau = Tableau {
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_field_names, reason = "the name that is used everywhere else")]
 struct Rates<S: Space> {
-    /// Velocity of every body, and the rate of its rotation vector, which leads from the start of the step to the
-    /// current stage ([`Space::turn_rate`]).
+    /// Velocity of every body, and the rate of its rotation vector ([`Space::turn_rate`]). The rotation vector
+    /// describes the rotation from the start of the step to the current stage.
     velocities: Vec<Twist<S>>,
     /// Acceleration of every body, and the rate of its [`Space::momentum`].
     kicks: Vec<Twist<S>>,

@@ -10,9 +10,9 @@ use crate::state::State;
 /// Takes a step of symplectic Euler: `v ← v + a dt`, then `q ← q + v dt` and `s ← s + ṡ dt`, both with the new
 /// velocity.
 ///
-/// The new slip rates are known only after the evaluation, so stick displacements are predicted with the old rates and
-/// then corrected. If they were advanced by the old rates alone, the energy of the tangential springs would grow in
-/// every step, by a fraction of ω² dt² for a tangential angular frequency ω.
+/// The new slip rates are known only after the evaluation, so the displacements of the tangential springs are predicted
+/// with the old rates and then corrected. If they were advanced by the old rates alone, the energy of these springs
+/// would grow in every step, by a fraction of ω² dt² for a tangential angular frequency ω.
 pub(super) fn semi_implicit_euler<S: Space>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -43,8 +43,8 @@ pub(super) fn semi_implicit_euler<S: Space>(
 /// forces at the new position.
 ///
 /// Forces that depend on the velocity use a velocity predicted with the old acceleration, which is corrected
-/// afterwards. Stick displacements are likewise predicted with the old slip rate and then corrected. Springs that
-/// engage or release within the step act for a part of the step only
+/// afterwards. The displacements of the tangential springs are likewise predicted with the old slip rate and then
+/// corrected. Springs that engage or release within the step act for a part of the step only
 /// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)). Prediction errors are of second order and
 /// do not accumulate, since the corrected values are kept.
 pub(super) fn velocity_verlet<S: Space>(
@@ -69,8 +69,8 @@ pub(super) fn velocity_verlet<S: Space>(
     accept(model, state, scratch, S::Real::splat(0.5) * step);
 }
 
-/// Computes the positions at the end of the step, and predicts the velocities and stick displacements from the old
-/// forces.
+/// Computes the positions at the end of the step, and predicts the velocities and the displacements of the tangential
+/// springs from the old forces.
 #[inline(always)]
 fn predict<S: Space>(
     model: &Model<S>,
@@ -103,8 +103,8 @@ fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S
     }
 }
 
-/// Ends a step: accepts the state that `scratch` was evaluated at, after correcting every stick displacement by the
-/// change of its slip rate, multiplied by `share` (s).
+/// Ends a step: accepts the state that `scratch` was evaluated at, after correcting the displacement of every
+/// tangential spring by the change of its slip rate, multiplied by `share` (s).
 fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
     let (new, old) = (&scratch.slip_rates, &scratch.old_slip_rates);
     commit_corrected(

@@ -12,7 +12,7 @@ use crate::state::State;
 
 use super::Lanewise;
 
-/// Type of a set of lanes: the mask of the scalar of a space.
+/// A set of lanes, as a mask.
 type MaskOf<S> = <<S as Space>::Real as Real>::Mask;
 
 /// A case that is ready to run: model, initial state, ground motion, time step and end time.
@@ -50,8 +50,8 @@ pub trait Batch<'a, S: Space> {
     /// Returns the next case for a lane; all cases of a batch must have the same [`Topology`](super::Topology).
     fn next(&mut self, lane: usize) -> Option<Case<'a, S::Single, Self::Drive>>;
 
-    /// Called with the initial state of a case, after its prescribed bodies have been moved with the ground, and with
-    /// the forces of this state.
+    /// Called when a case starts, with the initial state and its forces. The prescribed bodies have already been moved
+    /// with the ground.
     fn start(&mut self, lane: usize, state: &State<S::Single>, scratch: &Scratch<S::Single>);
 
     /// Called after each accepted step of all lanes; returns the lanes to stop.
@@ -179,7 +179,8 @@ impl<S: Space, D: Drive<S::Single>> Lanes<S, D> {
         self.busy = MaskOf::<S>::from_lanes(|l| l == lane || self.busy.lane(l));
     }
 
-    /// Freezes a lane in the state of a running lane, so that the frozen lane needs no additional contact elements.
+    /// Frees a lane. Its bodies get the poses of a running lane and stay at rest, so that the freed lane needs no
+    /// additional contact elements.
     fn retire(&mut self, lane: usize) {
         self.busy = MaskOf::<S>::from_lanes(|l| l != lane && self.busy.lane(l));
         self.drives.0[lane] = None;

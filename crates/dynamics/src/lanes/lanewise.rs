@@ -11,8 +11,8 @@ use crate::space::{Pose, Quaternion, Rotation2, Rotation3, Space, Twist, Vec2, V
 
 /// A value made of bundles; each of its lanes is a value of the corresponding type made of scalars.
 ///
-/// Everything that determines memory layout and control flow, such as the number of nodes or the kind of a law, must be
-/// equal in all lanes; [`Topology`](super::Topology) compares these properties beforehand.
+/// Everything that determines memory layout and control flow, such as the number of nodes or the kind of a contact law,
+/// must be equal in all lanes; [`Topology`](super::Topology) compares these properties beforehand.
 /// [`lanewise!`](crate::lanewise) implements this trait for structs and enums from the names of their fields.
 pub trait Lanewise {
     /// The corresponding type made of scalars: the value in one lane.
@@ -242,7 +242,7 @@ macro_rules! lanewise {
     };
 }
 
-/// Sets a truth value of one lane.
+/// Sets the truth value of one lane.
 pub fn put_truth<M: Mask>(mask: &mut M, lane: usize, single: bool) {
     let others = *mask;
     *mask = M::from_lanes(|l| if l == lane { single } else { others.lane(l) });

@@ -1,8 +1,9 @@
 //! Runs of many cases side by side, in the lanes of a vector register.
 //!
-//! The results of a lane are bit-identical to those of a single run, and the source code is the same: laws, shapes,
-//! methods and the energy balance are generic over [`Real`], which the bundles of this module implement. The vector
-//! unit is detected at run time, if the feature `vector-units` of this crate is on, as it is by default.
+//! The results of a lane are bit-identical to those of a single run, and the source code is the same: contact laws,
+//! shapes, integration methods and the energy balance are generic over [`Real`], which the bundles of this module
+//! implement. The vector unit is detected at run time, if the feature `vector-units` of this crate is on, as it is by
+//! default.
 //!
 //! - `Bundle`: eight numbers of one vector unit.
 //! - [`Topology`]: properties that must be equal for cases that run in one bundle.

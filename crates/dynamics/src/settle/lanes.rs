@@ -30,7 +30,7 @@ pub struct Stack<'a> {
 ///
 /// A lane gets the next stack as soon as its current stack is at rest. The lanes share only the list of contact
 /// elements, so every stack takes the same steps as if it were settled alone. A stack that does not come to rest at the
-/// first attempt is settled alone, where the cause is diagnosed.
+/// first attempt is settled again by [`settle`], which also diagnoses the cause.
 pub fn settle_all<R: Real>(
     stacks: &mut [Stack<'_>],
     tolerance: f64,

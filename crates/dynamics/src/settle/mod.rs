@@ -1,7 +1,8 @@
 //! Static equilibrium under gravity, computed before the ground moves.
 //!
-//! Equilibrium depends on positions and stick displacements alone. So it is solved in a fictitious time, with masses
-//! chosen for fast convergence and with vanishing velocities, at which no damper acts.
+//! Equilibrium depends only on the positions of the bodies and on the displacements of the tangential springs. So it is
+//! solved in a fictitious time, with masses chosen for fast convergence and with vanishing velocities, at which no
+//! damper acts.
 
 mod lanes;
 mod refusal;

@@ -17,8 +17,7 @@ const GOING: f64 = 0.1;
 /// Displacement of a body, as a fraction of its reach, beyond which it counts as out of place.
 const LEFT: f64 = 0.5;
 
-/// Displacement of a body, as a fraction of the largest displacement of any body, above which the body is classed as
-/// moving, too.
+/// A body is classed as moving, too, if its displacement exceeds this fraction of the largest displacement of any body.
 const WITH_IT: f64 = 0.25;
 
 /// Ratio of penetration to displacement above which a body is classed as sinking.
@@ -115,8 +114,8 @@ impl<S: Space> Departure<S> {
     }
 
     /// Returns the displacement (m) of every body from its initial position: the largest of its displacement sideways,
-    /// its rise, and its sinking in excess of the bodies below. So a body that sinks on soft contacts together with the
-    /// bodies below is not counted as displaced.
+    /// its rise, and the amount by which it sinks more than the bodies below. So a body that sinks on soft contacts
+    /// together with the bodies below is not counted as displaced.
     fn strayed(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<f64> {
         let down = model.gravity * (S::Real::splat(1.0) / gravity(model));
         let mut strayed = vec![0.0; self.start.len()];

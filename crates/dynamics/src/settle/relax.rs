@@ -220,7 +220,7 @@ impl<S: Space> Relaxation<S> {
         self.arrive(model, state, scratch);
     }
 
-    /// Takes the first part of a step: moves the bodies and advances the stick displacements.
+    /// Takes the first part of a step: moves the bodies, and advances the displacements of the tangential springs.
     pub(super) fn set_out(&mut self, model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]
@@ -330,7 +330,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Adds the tangential displacement of every contact to its stick displacement.
+    /// Adds the tangential displacement of every contact to the displacement of its tangential spring.
     #[inline(always)]
     fn slide(&self, sticks: &mut [Stick<S>]) {
         for touch in &self.touches {
@@ -352,8 +352,8 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// For every contact that began in this step, adds to its stick displacement the tangential displacement since the
-    /// contact began.
+    /// For every contact that began in this step, adds the tangential displacement since the contact began to the
+    /// displacement of its tangential spring.
     #[inline(always)]
     fn slide_fresh(&self, model: &Model<S>, sticks: &mut [Stick<S>], scratch: &Scratch<S>) {
         let one = S::Real::splat(1.0);

@@ -9,8 +9,8 @@ use crate::space::{Linear, Planar, Vec2};
 
 /// An arc about the origin that is open upward; the solid material is outside the circle.
 ///
-/// Within the opening angle, a point is free inside the circle and penetrates outside of it. Beyond the opening angle,
-/// only the two tips of the arc can be touched.
+/// Within the opening angle, a point inside the circle is free, and a point outside of it penetrates the solid. Beyond
+/// the opening angle, only the two tips of the arc can be touched.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cradle<R = f64> {
     /// Radius of the arc (m).

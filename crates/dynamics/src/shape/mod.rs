@@ -68,7 +68,8 @@ pub struct Facing<S: Space> {
     /// The point can bear on a piece of the other surface only if the direction toward the piece has a component of at
     /// most this value along each limit.
     pub most: f64,
-    /// Maximum distance (m) by which the point may lie outside of the sides that it does not face.
+    /// The point can bear on a piece only if it lies less than this distance (m) outside of every side that it does not
+    /// face.
     pub slack: f64,
 }
 
@@ -81,7 +82,7 @@ impl<S: Space> Facing<S> {
         Self { limits: [-normal; 2], most: -0.35, slack: FLUSH }
     }
 
-    /// Returns the lanes in which the point can bear on a piece with an outward normal.
+    /// Returns the lanes in which the point can bear on a piece with the given outward normal.
     #[inline(always)]
     pub(crate) fn includes(&self, normal: S::Vector) -> <S::Real as Real>::Mask {
         let most = S::Real::splat(self.most);

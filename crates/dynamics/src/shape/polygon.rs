@@ -60,7 +60,7 @@ pub enum PolygonError {
          polygon counterclockwise, without three successive corners in line"
     )]
     NotConvex {
-        /// The corner, counted from 1.
+        /// Number of the corner, counted from 1.
         corner: usize,
         /// Horizontal coordinate of the corner (m).
         x: f64,

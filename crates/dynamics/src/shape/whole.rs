@@ -10,8 +10,7 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
     /// surface. Patches without contact may be included; their distance is positive.
     ///
     /// `position` is the center of mass (m) of the solid's body, and `rotation` the rotation from the body frame to the
-    /// frame of the surface. In lanes outside of `near`, patches may be returned without contact, whatever the distance
-    /// is.
+    /// frame of the surface. In lanes outside of `near`, any patch may be returned as a patch without contact.
     fn meet(
         &self,
         surface: &S::Surface,
@@ -110,14 +109,14 @@ pub struct Bearing<S: Space> {
 /// E = a U(δ) + b (U(2 δ₀ − δ) + n U(δ₀))      n = 0 for a line, 2 for a face
 /// ```
 ///
-/// with `a = b = 1` equals, at any rotation, the energy of a tube supported at its two ends, or of a disc supported at
-/// four points of its rim. When bodies that lie flat on each other rock, the deepest point moves from one end to the
-/// other. At that moment the part of the force at the deepest point, `a U′(δ) − b U′(2 δ₀ − δ)`, vanishes if `a = b`,
-/// so neither force nor moment jumps. A patch that shrinks to a point has the stiffness of one spring, so there
-/// `a = b = 1/(2 + n)`.
+/// with `a = b = 1` equals, at any rotation, the energy of a capsule supported at its two ends, or of a disc supported
+/// at four points of its rim. When two bodies that lie flat on each other start to rock, the deepest point moves from
+/// one end to the other. At that moment the part of the force at the deepest point, `a U′(δ) − b U′(2 δ₀ − δ)`,
+/// vanishes if `a = b`, so neither force nor moment jumps. A patch that shrinks to a point has the stiffness of one
+/// spring, so there `a = b = 1/(2 + n)`.
 ///
 /// As bodies slide and turn, `a`, `b` and the position of the middle change as well, and so does the energy. The
-/// corresponding forces close the energy balance, for example for a tube that slides off a head.
+/// corresponding forces close the energy balance, for example for a capsule that slides off the head of a barrel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread<S: Space> {
     /// Middle of the patch.
@@ -138,8 +137,8 @@ pub struct Spread<S: Space> {
 /// mass (1/rad), stored in [`Wrench::moment`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes<S: Space> {
-    /// Derivative of the depth δ₀ (m) of the middle of the patch, without the part that is due to the motion of the two
-    /// bodies at this point.
+    /// Derivative of the depth δ₀ (m) at the middle of the patch, as far as it is due to the shift of the middle along
+    /// the bodies. The part that is due to the motion of the bodies themselves is excluded.
     pub middle: Wrench<S>,
     /// Derivative of `a`, the weight of the deepest point.
     pub deepest: Wrench<S>,
@@ -196,8 +195,8 @@ impl<S: Space> Axes<S> {
     }
 }
 
-/// Empty type for the plane, where convex boundaries touch with their round pieces ([`Round`](crate::body::Round))
-/// instead.
+/// Empty type: in the plane, no solid touches as a whole. Convex boundaries touch with their round pieces
+/// ([`Round`](crate::body::Round)) instead.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoWhole {}
 

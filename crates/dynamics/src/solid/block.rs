@@ -10,7 +10,7 @@ use crate::space::{Linear, Rotation3, Spatial, Vec3};
 /// rounding of its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block<R = f64> {
-    /// Half the sides (m) of the core.
+    /// Half the side lengths (m) of the core.
     pub half: Vec3<R>,
     /// Distance (m) of the surface from the core.
     pub rounding: R,

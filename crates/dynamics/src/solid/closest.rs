@@ -1,7 +1,7 @@
 //! Closest points of two convex bodies.
 //!
-//! The result in each lane is bit-identical to that of a single run. The usual case, a tube on the stave of a barrel,
-//! is computed in all lanes together; for all others, lanes are processed one after the other.
+//! The result in each lane is bit-identical to that of a single run. The usual case, a tube (capsule) on the stave of a
+//! barrel, is computed in all lanes together; for all others, lanes are processed one after the other.
 
 use super::barrel::Barrel;
 use super::rounded::Hull;
@@ -203,9 +203,9 @@ struct Support {
     along: f64,
     /// Additional radius of curvature (m) in the direction `around`.
     across: f64,
-    /// The unit vector around the axis.
+    /// Unit vector in the circumferential direction.
     around: Vec3,
-    /// β, the component of the direction perpendicular to the axis.
+    /// Component β, perpendicular to the axis of the barrel, of the direction in which the support point lies.
     outward: f64,
 }
 

@@ -29,7 +29,7 @@ pub(super) struct Vertex {
     pub(super) turning: Vec3,
 }
 
-/// The shared polygon of two blocks.
+/// The polygon that the faces of two blocks share.
 pub(super) struct Shared<const CORNERS: usize, const AXES: usize> {
     pub(super) vertices: [Option<Vertex>; CORNERS],
     /// Share of the contact that the polygon carries: 1 where a face of either block meets the other block, 0 where an
@@ -101,7 +101,7 @@ struct Face {
 }
 
 impl Face {
-    /// Returns the face of a block toward a direction in the frame of the block.
+    /// Returns the face of a block that faces a direction, which is given in the frame of the block.
     ///
     /// `frame` is the rotation from the frame of the block to that of the target, where the origin of the block lies at
     /// `at` (m). The cross product of the two vectors along the face points to the same side as `up`, which is the
@@ -251,8 +251,8 @@ fn shared(
 /// contactor's side, the common unit normal out of the target, the distance (m) along the normal, and a weight from 0
 /// to 1.
 ///
-/// The weight vanishes where the common normal deviates strongly from the normal of the face. This is so for nearly
-/// parallel sides, which pass each other beside the faces.
+/// The weight vanishes where the common normal deviates strongly from the normal of the target's face. For example, it
+/// vanishes for two nearly parallel sides that pass each other beside the faces.
 fn crossing(
     resting: &Face,
     own: usize,

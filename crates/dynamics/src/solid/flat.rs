@@ -1,5 +1,5 @@
-//! Line and face contacts of two bounded solids: two parallel tubes, a tube on a head or on the face of a block, and a
-//! head on a head or on the face of a block.
+//! Line and face contacts of two bounded solids: two parallel tubes (capsules), a tube on a head or on the face of a
+//! block, and a head on a head or on the face of a block.
 //!
 //! All computations are scalar, as in [`closest`](super::closest).
 
@@ -142,7 +142,7 @@ pub(super) fn slopes(
             let (at, frame) = along(offset);
             shared(contactor, target, at, frame, normal).map(|flat| (offset, values(&flat)))
         };
-        // One-sided where the patch ends.
+        // A one-sided difference where the patch ends.
         let from = there(-HAIR).unwrap_or((0.0, here));
         let to = there(HAIR).unwrap_or((0.0, here));
         let length = if to.0 > from.0 { to.0 - from.0 } else { 1.0 };
@@ -155,7 +155,8 @@ pub(super) fn slopes(
         force: Vec3::new(x[value], y[value], z[value]),
         moment: Vec3::new(yz[value], zx[value], xy[value]),
     });
-    // Removes the contribution of the material points: the depth decreases as the contactor moves along the normal.
+    // Excludes the part due to the motion of the bodies at the middle: the depth decreases as the contactor moves along
+    // the normal.
     middle.force += flat.gap.normal;
     middle.moment += (flat.point - at).cross(flat.gap.normal);
     Slopes { middle, deepest, others }
@@ -167,7 +168,8 @@ fn side_by_side(target: &Capsule, tube: &Capsule, at: Vec3, direction: Vec3) -> 
     if sine_squared >= WIDEST * WIDEST {
         return None;
     }
-    // Measured along the contactor, which has the closest point: as the overlap ends, only its middle remains.
+    // Measured along the contactor, on which the closest point lies: as the overlap shrinks to a point, only its middle
+    // remains.
     let (least, most, radius) =
         overlap(tube.half_length, -at.dot(direction), target.half_length * direction.x.abs());
     if radius <= 0.0 {
@@ -248,9 +250,9 @@ fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -
     }
 }
 
-/// Returns the contact line of a tube on a plane perpendicular to an axis. The plane is given by its height (m) along
-/// the axis and its rounding (m); the contact line follows a chord that is given by its middle and by half its length
-/// (m) along the tube.
+/// Returns the contact line of a tube on a flat face perpendicular to an axis. The face is given by the height (m) of
+/// its core along the axis, and by the rounding (m) that is added to this height. The part of the tube in front of the
+/// face is given by the position (m) of its middle along the tube and by half its length (m).
 fn on_plane(
     axis: Vec3,
     (height, rounding): (f64, f64),
@@ -309,11 +311,11 @@ fn head_on_block(
     head_on(axis, (block.half.dot(axis), block.rounding), middle, barrel, at, frame)
 }
 
-/// Returns the contact patch of a barrel's head on a plane perpendicular to an axis; the plane is given by its height
-/// (m) along the axis and its rounding (m).
+/// Returns the contact patch of a barrel's head on a flat face perpendicular to an axis. The face is given by the
+/// height (m) of its core along the axis, and by the rounding (m) that is added to this height.
 ///
-/// `middle` maps the position of the center of the head in the plane to the middle of the shared area and its extent
-/// (m).
+/// `middle` takes the position (m) of the center of the head in the plane of the face, and returns the middle of the
+/// shared area and its extent (m) from the middle.
 fn head_on(
     axis: Vec3,
     (height, rounding): (f64, f64),

@@ -24,13 +24,13 @@ impl Bulk {
         Self { mass, center: Vec3::default(), second: rows }
     }
 
-    /// Returns the distribution of a homogeneous ball with a mass (kg).
+    /// Returns the mass distribution of a homogeneous ball of the given mass (kg).
     pub fn of_ball(ball: &Ball, mass: f64) -> Self {
         let second = 0.2 * mass * ball.radius * ball.radius;
         Self::symmetric(mass, Vec3::new(second, second, second))
     }
 
-    /// Returns the distribution of a homogeneous capsule with a mass (kg).
+    /// Returns the mass distribution of a homogeneous capsule of the given mass (kg).
     pub fn of_capsule(capsule: &Capsule, mass: f64) -> Self {
         let Capsule { half_length: l, radius: r } = *capsule;
         // Shares of the tube and of the ball formed by both ends.
@@ -41,26 +41,27 @@ impl Bulk {
         Self::symmetric(mass, Vec3::new(along, across, across) * mass)
     }
 
-    /// Returns the distribution of a thin-walled tube with open ends and a mass (kg), such as a tube of a rack. The
-    /// outer surface of the tube is given as a capsule.
+    /// Returns the mass distribution of a thin-walled tube with open ends, such as a tube of a rack, given its mass
+    /// (kg). The outer surface of the tube is given as a capsule.
     pub fn of_hollow(capsule: &Capsule, mass: f64) -> Self {
         let Capsule { half_length: l, radius: r } = *capsule;
         let across = 0.5 * r * r;
         Self::symmetric(mass, Vec3::new(l * l / 3.0, across, across) * mass)
     }
 
-    /// Returns the distribution of a homogeneous block with sharp edges, from half its sides (m) and its mass (kg).
+    /// Returns the mass distribution of a homogeneous block with sharp edges, given half its side lengths (m) and its
+    /// mass (kg).
     pub fn of_block(half: Vec3, mass: f64) -> Self {
         Self::symmetric(mass, half.times(half) * (mass / 3.0))
     }
 
-    /// Returns the distribution of a homogeneous barrel with a mass (kg).
+    /// Returns the mass distribution of a homogeneous barrel of the given mass (kg).
     pub fn of_barrel(barrel: &Barrel, mass: f64) -> Self {
         let outside = revolved(barrel);
         outside.of_density(mass / outside.volume)
     }
 
-    /// Returns the distribution after a rotation and then a displacement (m).
+    /// Returns the mass distribution after the body is rotated and then displaced (m).
     #[must_use]
     pub fn placed(&self, offset: Vec3, rotation: Rotation3) -> Self {
         // R S Rᵀ: first its rows, then its columns.

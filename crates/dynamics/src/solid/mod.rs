@@ -55,10 +55,10 @@ impl<R: Real> Dish<R> {
     }
 }
 
-/// A tube with round ends, along `x`, centered at the origin.
+/// A cylinder with hemispherical ends, such as a tube of a rack. Its axis is along `x`, and its center is the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule<R = f64> {
-    /// Half the length (m) of the axis; the tube extends beyond the axis by its radius at both ends.
+    /// Half the length (m) of the axis; the capsule extends beyond the axis by its radius at both ends.
     pub half_length: R,
     /// Radius (m).
     pub radius: R,

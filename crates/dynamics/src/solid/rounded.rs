@@ -15,7 +15,7 @@ use crate::space::{Rotation3, Spatial, Vec3, Wrench};
 /// A convex solid that touches with its deepest points. It is centered at the origin, with its axis along `x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hull<R = f64> {
-    /// A tube with round ends.
+    /// A cylinder with hemispherical ends.
     Capsule(Capsule<R>),
     /// A barrel.
     Barrel(Barrel<R>),

@@ -190,9 +190,9 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn rotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
     /// Transforms a tangent from the inertial frame to a rotated frame.
     fn unrotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
-    /// Returns the rate of change (m/s) of a stick displacement, in the inertial frame, due to its rotation about the
-    /// normal. The displacement rotates with the mean spin of both bodies. `spins` contains the spin (rad/s) of one
-    /// body and the spin of the other body relative to the first, in a rotated frame.
+    /// Returns the rate of change (m/s) of the displacement of a tangential spring, in the inertial frame, due to its
+    /// rotation about the normal. The displacement rotates with the mean spin of both bodies. `spins` contains the spin
+    /// (rad/s) of one body and the spin of the other body relative to the first, in a rotated frame.
     fn stick_turn(
         displacement: Self::Tangent,
         plane: Self::TangentPlane,

@@ -20,7 +20,7 @@ use barrelstack_dynamics::{
 use crate::builder::Builder;
 use crate::stack::Stack;
 
-/// An element that has not yet been fitted to the stack at rest.
+/// A force element that will be attached when the stack is at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
     element: Element<Spatial>,
@@ -36,7 +36,7 @@ impl Loose {
         Self { element: element.into(), give, about_axis: false, words }
     }
 
-    /// Fits the element to the stack at rest.
+    /// Attaches the element to the stack at rest: derives its unloaded length from the distance between its ends.
     fn tighten(self, state: &State<Spatial>) -> Element<Spatial> {
         let Self { mut element, give, about_axis, .. } = self;
         element.fit(state, give);
@@ -110,7 +110,7 @@ impl Builder<'_> {
 }
 
 impl Stack {
-    /// Fits the elements to the stack at rest in `state`; returns `true` if any element is under load.
+    /// Attaches the elements to the stack at rest in `state`; returns `true` if any element is then under load.
     pub(crate) fn fasten(&mut self, state: &mut State<Spatial>) -> Result<bool, ModelError> {
         let loose = std::mem::take(&mut self.loose);
         if loose.is_empty() {

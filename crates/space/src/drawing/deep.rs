@@ -41,7 +41,8 @@ pub(super) fn depth(run: &Run, frames: &[usize]) -> Depth {
     }
 }
 
-/// Returns bodies with their names and their poses in all frames, above a floor, which is the first body.
+/// Returns a three-dimensional scene that contains a floor, as its first body, and the given bodies with their names.
+/// `poses` contains the poses of all bodies in every frame.
 pub(super) fn of_bodies<'a>(
     bodies: impl Iterator<Item = (&'a Part, &'a Body<Spatial>, &'a str)>,
     poses: Vec<Vec<[f64; 7]>>,

@@ -23,7 +23,7 @@ pub(crate) struct PairKinematics<S: Space> {
 struct Motion<S: Space> {
     /// Vector (m) from the center of mass of the target to the center of mass of the contactor.
     apart: S::Vector,
-    /// Velocity (m/s), at the contactor's center of mass, of the contactor relative to the target.
+    /// Velocity (m/s) of the contactor relative to the target, at the center of mass of the contactor.
     linear: S::Vector,
     /// Spin (rad/s) of the contactor relative to the target.
     spin: S::Spin,

@@ -80,7 +80,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             (depth_and_rate(&deepest), depth_and_rate(&spread.middle));
         let touching = zero.lt(depth);
         let (shares, between) = (spread.shares, S::Real::splat(spread.axes.in_the_middle()));
-        // Depth, rate and number of springs at the deepest point, at its mirror image and in the middle.
+        // For the deepest point, its mirror image and the middle: depth, penetration rate, and number of springs.
         let springs = [
             (depth, rate, shares.deepest),
             (middle + middle - depth, middle_rate + middle_rate - rate, shares.others),
@@ -283,8 +283,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 }
 
 impl<S: Space> Spread<S> {
-    /// Returns the lanes in which more than the deepest point of the patch is in contact; `deepest` is the distance (m)
-    /// of this point.
+    /// Returns the lanes in which the patch touches with more than its deepest point; `deepest` is the gap (m) at the
+    /// deepest point.
     #[inline(always)]
     fn bears(&self, deepest: S::Real) -> <S::Real as Real>::Mask {
         let (zero, middle) = (S::Real::zero(), self.middle.gap.distance);

@@ -6,21 +6,22 @@ use crate::real::{Mask, Real, both};
 use crate::shape::{Facing, Nearest, Surface};
 use crate::space::{Linear, Space, Wrench};
 
-/// Length (m) by which a side is extended for corners of the leading body, and shortened for corners of the other body.
-/// This way, exactly one contact is counted where two corners coincide.
+/// Length (m) by which a side is extended when it is tested against a corner of the body that [leads](Press::leads),
+/// and shortened when it is tested against a corner of the other body. So exactly one contact is counted where two
+/// corners coincide.
 const SLACK: f64 = 1e-9;
 
-/// Distance (m) from the end of a side of the other body beyond which a corner always counts in full. A corner nearer
-/// to the end may share its contact with the other body's corner at that end.
+/// A corner that bears on a side of the other body always counts in full if it is farther than this distance (m) from
+/// the end of the side. A corner nearer to the end may share its contact with the other body's corner at that end.
 const COMPANION: f64 = 0.01;
 
 /// A round piece faces a side if the direction toward the side is within the limits of the piece, or outside of them by
 /// at most about 45°. This constant is the sine of that angle.
 const FACES: f64 = 0.7;
 
-/// Distance (m) outside the other body's core up to which the center of a round piece is treated like a center inside
-/// the core: the piece can bear on any side that it faces, and not only on the nearest side. Where two bodies are
-/// flush, one of two nearly coincident corners lies within this distance.
+/// A round piece whose center lies inside the core of the other body can bear on any side that it faces, and not only
+/// on the nearest side. The same applies up to this distance (m) outside of the core: where two bodies are flush, one
+/// of two nearly coincident corners lies there.
 const NEARLY_INSIDE: f64 = 1e-5;
 
 /// Tolerance, as the sine of an angle, for contacts between two round pieces: the direction toward the other piece may
@@ -120,9 +121,9 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// overlap. They are one contact, which splits into two as the overlap grows. Of the two corners, the one nearer to
     /// the end of the side that it bears on is the shallower; its share decreases to zero toward that end. The other
     /// corner counts in full. So neither contact begins or ends with a jump in force, at any depth. Where two faces end
-    /// at the same place to within rounding, the two corners coincide, and only one of them counts: the corner that is
-    /// farther from the end of the side that it bears on or, if both are equally far from it, the corner of the leading
-    /// body.
+    /// at the same place to within rounding, the two corners coincide, and only one of them counts. This is the corner
+    /// that is farther from the end of the side that it bears on or, if both are equally far, the corner of the body
+    /// that [leads](Press::leads).
     #[inline(always)]
     fn share(&self, round: &Round<S>, nearest: &Nearest<S>, slack: S::Real) -> Share<S::Real> {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));

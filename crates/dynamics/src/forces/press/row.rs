@@ -1,7 +1,7 @@
 //! Rows of nodes that act as one seat.
 //!
-//! The depth of the seat is that of its deepest node. The laws are evaluated at this depth, and their forces are
-//! divided among the touching nodes in proportion to the depths of the nodes. So the number of nodes affects the
+//! The depth of the seat is that of its deepest node. The contact laws are evaluated at this depth, and their forces
+//! are divided among the touching nodes in proportion to the depths of the nodes. So the number of nodes affects the
 //! location of the resultant force, but not the stiffness, the damping or the friction.
 
 use crate::pair_frame::AtFace;
