@@ -14,7 +14,7 @@ const WATCHED: f64 = 0.85;
 /// Weight of a constrained extremum that does not exceed the target.
 const WATCHED_WEIGHT: f64 = 0.4;
 
-/// Largest number of times that the system of a round is solved, because each solution may raise
+/// Largest number of solutions of the linear system in one round. The system is solved again whenever a solution raises
 /// further extrema above the target.
 const BOUNDING: usize = 5;
 /// Largest applied fraction of a correction. The fraction is doubled after a success and halved after a

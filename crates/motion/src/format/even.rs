@@ -9,7 +9,7 @@ use crate::record::Record;
 pub(crate) struct Timed {
     /// Line of the first row, counted from 0.
     pub(crate) first_line: usize,
-    /// Number of times on each line of the file, each with its values.
+    /// Number of rows on each line of the file. A row consists of a time and its values.
     pub(crate) per_line: usize,
     /// Times (s).
     pub(crate) time: Vec<f64>,
@@ -34,8 +34,8 @@ impl Timed {
 
 /// Returns the constant time step (s) of the columns, and the columns sampled at this step.
 ///
-/// If the times are evenly spaced within their printed digits, the step follows exactly from them.
-/// Otherwise, the values are interpolated linearly at a finer step, with a warning.
+/// If the times are evenly spaced to within their printed digits, the exact step is derived from them. Otherwise, the
+/// values are interpolated linearly at a finer step, with a warning.
 pub(crate) fn even_steps(
     source: &Source<'_>,
     record: &mut Record,

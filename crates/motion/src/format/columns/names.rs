@@ -149,11 +149,10 @@ fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
     })
 }
 
-/// Returns the first part of a line that is not a unit, if the other parts show that the line is a
-/// row of units.
+/// Returns the first word that is not a known unit, if the line is otherwise a row of units.
 ///
-/// More than half of the parts must be units. Exactly half of the parts is sufficient unless the
-/// other parts are names, as in `time, g`.
+/// A line is a row of units if more than half of its words are units. Exactly half of the words is sufficient, unless
+/// the other words are names, as in `time, g`.
 fn damaged_unit(text: &str, width: usize) -> Option<String> {
     splits(plain(text)).into_iter().find_map(|(separated, parts)| {
         if parts.len() != width || parts.iter().any(String::is_empty) {

@@ -6,7 +6,7 @@ use crate::math;
 
 /// Number of rows that are examined to determine the number format.
 const ROWS: usize = 200;
-/// Minimum fraction of increasing steps in an unnamed first column of times.
+/// Fraction of the steps from row to row that must be positive if an unnamed first column is to count as times.
 const RISING: f64 = 0.95;
 
 /// Returns `true` if an unnamed column contains times or row numbers: it increases almost

@@ -123,7 +123,7 @@ pub(super) const SAMPLING_KEYS: &[&str] = &[
 pub(super) const BARE: &[&str] =
     &["sampling", "muestreo", "campionamento", "amostragem", "abtastung", "delta"];
 
-/// Words next to a number with a unit of time that identify the number as the step.
+/// Words that identify a time on the same line, such as `5 ms`, as the time step.
 pub(super) const BESIDE_STEPS: &[&str] = &["interval", "step", "increment", "spac", "sampl"];
 
 /// Keywords for the number of samples.
