@@ -7,18 +7,18 @@ use crate::proportion::{Interval, unobserved};
 /// Minimum number of blocks for which an interval is computed.
 pub const FEWEST_BLOCKS: usize = 16;
 
-/// Sensitivity indices of one input, with intervals.
+/// Sensitivity indices of one input, with confidence intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Index {
     /// First-order index: the fraction of the variance that vanishes if the input is known (Sobol' 1993),
     /// clamped to the range from 0 to 1.
     pub first: f64,
-    /// Interval of the first-order index; 0 to 1 if there are fewer than [`FEWEST_BLOCKS`] blocks.
+    /// Confidence interval of the first-order index; 0 to 1 if there are fewer than [`FEWEST_BLOCKS`] blocks.
     pub first_interval: Interval,
     /// Total index: the fraction of the variance that remains if all other inputs are known, which includes
     /// interactions. It is clamped to the range from 0 to 1.
     pub total: f64,
-    /// Interval of the total index; 0 to 1 if there are fewer than [`FEWEST_BLOCKS`] blocks.
+    /// Confidence interval of the total index; 0 to 1 if there are fewer than [`FEWEST_BLOCKS`] blocks.
     pub total_interval: Interval,
 }
 

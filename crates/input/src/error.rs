@@ -30,7 +30,7 @@ pub enum Place {
         /// Name of the file as given.
         file: String,
     },
-    /// A default value, which appears nowhere in the input.
+    /// No place: the value is a default, which appears nowhere in the input.
     Unknown,
 }
 

@@ -212,8 +212,7 @@ impl Processing {
         steps.push(format!("mean of {of} removed, {mean:.3e} m/s2"));
     }
 
-    /// Pads and filters the accelerations. Returns the time (s) by which the recorded part is
-    /// delayed by the leading pad.
+    /// Pads and filters the accelerations. Returns the length (s) of the leading pad, which delays the recorded part.
     fn filter(&self, time_step: f64, a: &mut Vec<f64>, steps: &mut Vec<String>) -> f64 {
         let corner = self.high_pass_used(time_step, a.len());
         if let (Some(requested), Some(used)) = (self.high_pass, corner)
@@ -337,7 +336,7 @@ impl Residuals {
     }
 }
 
-/// Returns the number of samples before the first arrival, at most 5 s; `None` if there is less
+/// Returns the number of quiet samples before the first arrival, limited to 5 s; `None` if the quiet part is shorter
 /// than half a second.
 ///
 /// The arrival is the first sample that differs from the mean of the first half second by more than

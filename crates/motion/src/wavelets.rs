@@ -289,8 +289,8 @@ impl Group {
         Bank::new(&steps)
     }
 
-    /// Returns the displacement of oscillator `k` at `since` samples after the start of a wavelet.
-    /// It is computed from `bank`, the state after `whole` strides of the wavelet.
+    /// Returns the displacement of oscillator `k` at `since` samples after the start of a wavelet. `bank` holds the
+    /// state of the oscillators after `whole` strides of the wavelet.
     fn on(&self, k: usize, bank: &Bank, wavelet: &Wavelet, whole: usize, since: usize) -> f64 {
         let (u, v) = (bank.u[k], bank.v[k]);
         let left = since - whole * wavelet.stride;

@@ -132,8 +132,9 @@ fn slack(time: f64, first: f64) -> f64 {
     1e-9 * (time - first).abs() + 4.0 * f64::EPSILON * time.abs()
 }
 
-/// Returns a round step such that all times are evenly spaced within one unit of their last printed
-/// digit; `None` if there is no such step. Truncated times have such deviations.
+/// Returns a time step (s), the reciprocal of a whole number, that fits all times to within one unit of their last
+/// printed digit; `None` if there is no such step. Deviations of up to one unit occur if a program truncates the times
+/// instead of rounding them.
 fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
     let step = 1.0 / (1.0 / mean).round();
     let strays = |(k, t): (usize, &f64)| {

@@ -249,9 +249,9 @@ fn merged(parts: Vec<String>) -> Vec<String> {
     out
 }
 
-/// Returns `true` if the names are column names of a table, which requires that all names are
-/// quantities. One column may have any name if time is the first column or the separator does not
-/// occur in prose.
+/// Returns `true` if the words of a line are column names rather than prose. `separated` is `true` if the separator
+/// between the words does not occur in prose. In general, every word must be the name of a quantity. Other words are
+/// allowed if `separated` is `true` and the first column contains times, row numbers or a spectrum.
 fn says_quantities(names: &[Name], separated: bool) -> bool {
     let says = |name: &Name| name.holds != Holds::Unknown;
     let leads = matches!(names[0].holds, Holds::Time | Holds::Index | Holds::Spectrum);

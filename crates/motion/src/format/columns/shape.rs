@@ -157,8 +157,8 @@ pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
     })
 }
 
-/// Returns, for each column, whether its values are, within 1 %, the lengths of the vectors formed
-/// by all other columns, or by two or three adjacent columns.
+/// Returns one flag per column: `true` if the column contains the lengths of vectors whose components are other
+/// columns, within 1 %. These are all other columns, or two or three adjacent columns.
 pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
     let is_length = |at: usize| {
         let of = &columns[at];
