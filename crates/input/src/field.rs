@@ -61,7 +61,7 @@ pub struct Field {
 pub enum Default {
     /// The field is required.
     Required,
-    /// The value is optional and stays absent.
+    /// The field is optional and has no default value.
     Nothing,
     /// A value derived from other fields, described in words.
     Derived(&'static str),

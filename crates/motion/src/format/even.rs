@@ -9,7 +9,7 @@ use crate::record::Record;
 pub(crate) struct Timed {
     /// Line of the first row, counted from 0.
     pub(crate) first_line: usize,
-    /// Number of rows on each line of the file. A row consists of a time and its values.
+    /// Number of samples on each line of the file; a sample is a time with its values.
     pub(crate) per_line: usize,
     /// Times (s).
     pub(crate) time: Vec<f64>,

@@ -43,7 +43,7 @@ impl<'a> Hints<'a> {
         self.options
     }
 
-    /// Marks all options as used that another reader has used.
+    /// Marks each option that another reader has used as used by this reader, too.
     pub(super) fn used_as(&self, other: &Hints<'_>) {
         for (mine, theirs) in [
             (&self.unit, &other.unit),

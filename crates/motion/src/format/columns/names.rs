@@ -17,7 +17,7 @@ pub(super) enum Holds {
     /// Row numbers.
     Index,
     Motion(Quantity),
-    /// A name that is only a direction, such as `EW`.
+    /// Values of one component. The name of the column is only a direction, such as `EW`.
     Component,
     /// A period, a frequency or a spectral ordinate.
     Spectrum,
