@@ -35,7 +35,7 @@ pub struct Flatfile {
 }
 
 /// Names of the column that contains the record sequence number: first in the published table, then in its abridged
-/// forms. The constants below that have no comment hold the names of the other columns in the same manner.
+/// forms. The constants below without a comment do the same for other columns.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
 const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
 const STATION: &[&str] = &["station name", "station", "station_code"];

@@ -14,8 +14,8 @@ const LARGEST_MEAN: f64 = 0.5 * STANDARD_GRAVITY;
 const LARGEST_ONE_SIDED: f64 = 0.05 * STANDARD_GRAVITY;
 /// Shortest record (s) whose mean is checked; analytic pulses are shorter.
 const SHORTEST: f64 = 2.0;
-/// Smallest mean (m/s²) of the acceleration along an axis that is treated as a component of gravity; smaller means are
-/// kept.
+/// If gravity is spread over several axes, the mean of an axis is subtracted only if its magnitude exceeds this value
+/// (m/s²).
 const SMALLEST_PART: f64 = 0.05;
 /// Largest angle (degrees) between gravity and an axis that is considered vertical.
 const LARGEST_TILT: f64 = 3.0;
