@@ -87,7 +87,8 @@ pub struct Influence {
     /// Total index: the fraction of the variance of the share that remains if all other constants are known,
     /// including interactions.
     pub total: f64,
-    /// Mean width of the range in which the share still lies if this constant is known exactly.
+    /// Width of the range in which the share lies if this constant is known exactly and all other constants are
+    /// unknown; the mean over the values of this constant.
     pub width_if_known: f64,
 }
 
@@ -135,8 +136,8 @@ enum Prior {
     Normal(f64),
     /// Student's t distribution with [`FREEDOM`] degrees of freedom and a scale.
     Student(f64),
-    /// Normal distribution with a standard deviation that all such coefficients share and that is itself uncertain;
-    /// [`PRIOR_GROUPS`] is its scale.
+    /// Normal distribution. All coefficients with this prior distribution have the same standard deviation, which is
+    /// itself uncertain; [`PRIOR_GROUPS`] is the scale of the prior distribution of this standard deviation.
     Group,
 }
 
