@@ -1,6 +1,6 @@
 //! Reader of COSMOS format 1.20, volumes 0 (counts), 1 and 2.
 //!
-//! The first line of a block states the number of its items and their Fortran format; the reader uses both. Spec:
+//! The first line of each block of numbers states their count and their Fortran format; the reader uses both. Spec:
 //! Strong-Motion Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
 
 use super::source::{

@@ -43,7 +43,7 @@ impl<'a> Hints<'a> {
         self.options
     }
 
-    /// Marks each option that another reader has used as used by this reader, too.
+    /// Adds the marks of another reader to the marks of this reader.
     pub(super) fn used_as(&self, other: &Hints<'_>) {
         for (mine, theirs) in [
             (&self.unit, &other.unit),
