@@ -72,8 +72,8 @@ pub(super) fn as_acceleration(
         record.warn(
             None,
             format!(
-                "according to its metadata, channel {label} was recorded by a {quantity} sensor: the accelerations were \
-                 obtained by differentiation; strong shaking may have exceeded the range of such a sensor"
+                "according to its metadata, channel {label} was recorded by a {quantity} sensor: the accelerations \
+                 were obtained by differentiation; strong shaking may have exceeded the range of such a sensor"
             ),
         );
     }
