@@ -446,7 +446,7 @@ fn mistakes_are_one_error_and_nothing_is_written() {
         (&["process", first, "--high-pass", "200 Hz"], &["high-pass", "Nyquist", "100 Hz"]),
         (
             &["process", first, "--low-pass", "1e-9 Hz"],
-            &["channel E: low-pass", "one over the duration, 0.02", "give a value in this range"],
+            &["channel E: low-pass", "of the duration, 0.02", "give a value in this range"],
         ),
         (&["process", first, "--chain", "none"], &["has no steps"]),
         (&["match", first, "--to", "asce8:a=1"], &["asce8", "nzs1170"]),

@@ -31,7 +31,7 @@ impl Replicates {
         Interval { low: bounds[0], high: bounds[1] }
     }
 
-    /// Returns the interval of the probability of failure at each intensity.
+    /// Returns the confidence interval of the probability of failure at each intensity.
     pub fn band(&self, level: f64, intensities: &[f64]) -> Vec<Interval> {
         // The interval is computed for the score, which increases with the probability and is not bounded, and is then
         // converted to probabilities.
@@ -43,19 +43,19 @@ impl Replicates {
         intensities.iter().map(chance).collect()
     }
 
-    /// Returns the interval of the median.
+    /// Returns the confidence interval of the median.
     pub fn median(&self, level: f64) -> Interval {
         self.interval(level, |curve| curve.median)
     }
 
-    /// Returns the interval of the dispersion.
+    /// Returns the confidence interval of the dispersion.
     pub fn dispersion(&self, level: f64) -> Interval {
         self.interval(level, |curve| curve.dispersion)
     }
 }
 
-/// Returns the normal quantile of the fraction of sorted values that lie below a value. Values equal to the
-/// given value count as one half.
+/// Returns `Φ⁻¹(p)`, where `p` is the fraction of the sorted values that are less than `value`. Values equal to `value`
+/// count as one half.
 fn bias(ascending: &[f64], value: f64) -> f64 {
     let below = ascending.partition_point(|x| *x < value);
     let same = ascending[below..].partition_point(|x| *x <= value);
@@ -69,7 +69,8 @@ pub(crate) fn binomial(cases: u32, chance: f64, uniform: &mut impl FnMut() -> f6
     (0..cases).map(|_| u32::from(uniform() < chance)).sum()
 }
 
-/// Draws failure counts for the intensities and the numbers of cases of `stripes`.
+/// Draws a random number of failures for each stripe and returns stripes with these numbers. `chance` returns the
+/// probability of failure in the stripe with the given index.
 pub(crate) fn drawn(
     stripes: &[Stripe],
     chance: impl Fn(usize) -> f64,

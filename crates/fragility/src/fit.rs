@@ -119,14 +119,12 @@ impl Fit {
         self.ln_likelihood + coefficients
     }
 
-    /// Returns the interval of the median at a confidence level. It follows from the standard error of the
-    /// median.
+    /// Returns the confidence interval of the median, computed from the standard error of its logarithm.
     pub fn median_interval(&self, level: f64) -> Interval {
         around(self.curve.median, self.median_error, level)
     }
 
-    /// Returns the interval of the dispersion at a confidence level. It follows from the standard error of
-    /// the dispersion.
+    /// Returns the confidence interval of the dispersion, computed from the standard error of its logarithm.
     pub fn dispersion_interval(&self, level: f64) -> Interval {
         around(self.curve.dispersion, self.dispersion_error, level)
     }

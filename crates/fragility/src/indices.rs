@@ -7,18 +7,18 @@ use crate::proportion::{Interval, unobserved};
 /// Minimum number of blocks for which an interval is computed.
 pub const FEWEST_BLOCKS: usize = 16;
 
-/// Sensitivity indices of one input, with intervals.
+/// Sensitivity indices of one input, with confidence intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Index {
     /// First-order index: the fraction of the variance that vanishes if the input is known (Sobol' 1993),
     /// clamped to the range from 0 to 1.
     pub first: f64,
-    /// Interval of the first-order index; 0 to 1 if there are fewer than [`FEWEST_BLOCKS`] blocks.
+    /// Confidence interval of the first-order index; 0 to 1 if there are fewer than [`FEWEST_BLOCKS`] blocks.
     pub first_interval: Interval,
     /// Total index: the fraction of the variance that remains if all other inputs are known, which includes
     /// interactions. It is clamped to the range from 0 to 1.
     pub total: f64,
-    /// Interval of the total index; 0 to 1 if there are fewer than [`FEWEST_BLOCKS`] blocks.
+    /// Confidence interval of the total index; 0 to 1 if there are fewer than [`FEWEST_BLOCKS`] blocks.
     pub total_interval: Interval,
 }
 
@@ -33,9 +33,9 @@ pub struct Index {
 /// `V` is the variance of all `f(A)` and `f(B)`. All results are centered on the mean of all `f(A)` and `f(B)`.
 /// Intervals come from the delete-one jackknife over blocks and from Student's t distribution, with the number of
 /// blocks minus one as degrees of freedom. For the total index, an interval is computed on the linear and on the
-/// logarithmic scale, and the wider one is returned. If an input changes the result in at most half of the blocks,
-/// these changes count as rare events, and the blocks may have missed a small proportion ([`unobserved`]) of them. The
-/// interval is then extended to the index that would result if the missed changes were as large as the range of
+/// logarithmic scale, and the wider one is returned. If an input changes the result in at most half of the blocks, such
+/// changes are treated as rare events, a small proportion of which ([`unobserved`]) may be missing from the blocks. The
+/// interval is then extended to the index that would result if the missing changes were as large as the range of the
 /// results. Bounds are clamped to the range from 0 to 1. In simulations with 16 to 256 blocks, the coverage is at least
 /// 89 % for binary results, counts and continuous results (`tests/claims.rs`).
 ///
@@ -52,7 +52,8 @@ pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {
         sums.add(block, middle, 1.0);
     }
     let (variance, indices) = (sums.variance(middle)?, sums.indices(middle)?);
-    // Sum of squared changes of the indices without one block; `None` if the remaining results are constant.
+    // For each index, the sum over all blocks of the squared change of the index if the block is left out. `None` if
+    // the results without a block are constant.
     let mut squares = Some(vec![[0.0; 2]; inputs]);
     for block in blocks {
         let mut others = sums.clone();
@@ -117,9 +118,9 @@ const TOTAL: usize = 1;
 #[derive(Clone)]
 struct Sums {
     count: f64,
-    /// Sum of `f(A)` and `f(B)`.
+    /// Sum of all `f(A)` and `f(B)`.
     results: f64,
-    /// Sum of the squares of `f(A)` and `f(B)`.
+    /// Sum of the squares of all `f(A)` and `f(B)`.
     squares: f64,
     /// For every input, three sums: of the change `f(AᵢB) − f(A)`, of the product of this change and `f(B)`, and of the
     /// square of this change.
@@ -127,7 +128,7 @@ struct Sums {
 }
 
 impl Sums {
-    /// Creates sums over no blocks, all of which are zero.
+    /// Creates the sums over an empty set of blocks; all sums are zero.
     fn empty(inputs: usize) -> Self {
         Self { count: 0.0, results: 0.0, squares: 0.0, inputs: vec![[0.0; 3]; inputs] }
     }
@@ -147,7 +148,8 @@ impl Sums {
         }
     }
 
-    /// Returns the variance of the results; `None` if rounding errors alone explain it.
+    /// Returns the variance of the results; `None` if the variance is so small that it may consist of rounding errors
+    /// only.
     fn variance(&self, middle: f64) -> Option<f64> {
         let mean = self.results / (2.0 * self.count);
         let variance = (self.squares - mean * self.results) / (2.0 * self.count - 1.0);

@@ -168,8 +168,8 @@ pub struct Returned {
     pub stood: f64,
 }
 
-/// Returns the groups of cases, such as those of one record, that failed at one intensity and stood at a
-/// higher one.
+/// Returns the groups that failed at one intensity and stood at a higher one. A group is, for example, all cases of one
+/// record.
 ///
 /// Each case is a triple `(group, intensity, failed)`. No statistical test is made.
 pub fn returns(cases: impl IntoIterator<Item = (usize, f64, bool)>) -> Vec<Returned> {

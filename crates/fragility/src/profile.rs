@@ -44,8 +44,9 @@ impl<'a> Profile<'a> {
         Ok((profile, found))
     }
 
-    /// Returns the log-likelihood at the ends of the interval, minus the largest log-likelihood of all curves that have
-    /// the given score at `ln x = place`. The result is negative for scores inside the interval.
+    /// Returns the difference of two log-likelihoods: that at the ends of the confidence interval, minus the largest
+    /// one of all curves that have the given score at `ln x = place`. The difference is negative for scores inside the
+    /// interval.
     fn excess(&self, place: f64, score: f64) -> f64 {
         let highest = match self.dispersion {
             Dispersion::Free => {
@@ -110,7 +111,7 @@ fn edge(excess: impl Fn(f64) -> f64, from: f64, step: f64, limit: f64) -> f64 {
     0.5 * (inside + outside)
 }
 
-/// Returns the interval of the probability of failure at each intensity.
+/// Returns the confidence interval of the probability of failure at each intensity.
 ///
 /// # Errors
 /// As for [`fit`], or if the level is not between 0 and 1.
@@ -140,8 +141,8 @@ pub fn profile_band(
     Ok(band)
 }
 
-/// Returns the interval of the median. If the data do not bound it, the lower bound is 0 or the upper bound
-/// is infinite.
+/// Returns the confidence interval of the median. If the data do not bound the median, the lower bound is 0 or the
+/// upper bound is infinite.
 ///
 /// # Errors
 /// As for [`fit`], or if the level is not between 0 and 1.

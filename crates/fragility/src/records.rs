@@ -75,7 +75,7 @@ impl LeaveOneOut {
         self.spread(|curve| ln(curve.dispersion), |curve| ln(curve.dispersion)).sqrt()
     }
 
-    /// Returns the interval of a function of the curve. The errors of the function must be nearly symmetric,
+    /// Returns the confidence interval of a function of the curve. The errors of the function must be nearly symmetric,
     /// as for the logarithm of a rate.
     pub fn interval(&self, level: f64, of: impl Fn(&Lognormal) -> f64) -> Interval {
         let here = of(&self.fitted);
@@ -83,7 +83,7 @@ impl LeaveOneOut {
         Interval { low: here - half, high: here + half }
     }
 
-    /// Returns the interval of the probability of failure at each intensity.
+    /// Returns the confidence interval of the probability of failure at each intensity.
     pub fn band(&self, level: f64, intensities: &[f64]) -> Vec<Interval> {
         let chance = |x: &f64| {
             // The interval is computed for the score, which is not bounded, and is then converted to probabilities.
@@ -107,7 +107,7 @@ impl LeaveOneOut {
         variance.max(0.0).sqrt()
     }
 
-    /// Returns the interval of the intensity at which the probability of failure is `probability`.
+    /// Returns the confidence interval of the intensity at which the probability of failure is `probability`.
     pub fn intensity(&self, level: f64, probability: f64) -> Interval {
         let Lognormal { median, dispersion } = self.fitted;
         let score = normal_quantile(probability);
@@ -116,25 +116,30 @@ impl LeaveOneOut {
         Interval { low: at(score - half), high: at(score + half) }
     }
 
-    /// Returns the interval of the dispersion.
+    /// Returns the confidence interval of the dispersion.
     pub fn dispersion(&self, level: f64) -> Interval {
         let logs = self.interval(level, |curve| ln(curve.dispersion));
         Interval { low: exp(logs.low), high: exp(logs.high) }
     }
 
-    /// Returns the interval of the median.
+    /// Returns the confidence interval of the median.
     pub fn median(&self, level: f64) -> Interval {
         self.intensity(level, 0.5)
     }
 }
 
-/// Returns the interval of the mean of a quantity between 0 and 1, over cases that depend on each other within groups.
+/// Returns the confidence interval of the mean of a quantity between 0 and 1. Cases of the same group depend on each
+/// other.
 ///
-/// Each group is `(sum, cases)`. The interval is Wilson's, with a quantile of Student's t distribution in place of the
-/// normal quantile. In place of the number of cases, the formula uses the number of independent cases whose mean would
-/// have the variance that the scatter of the groups gives for the mean of all cases, or the number of groups if these
-/// do not scatter at all. A few groups may agree by chance. The interval is therefore extended to the means that would
-/// result if the groups that the sample may have missed ([`unobserved`]) contained only zeros, or only ones.
+/// Each group is `(sum, cases)`. The interval is Wilson's, with two changes. A quantile of Student's t distribution
+/// replaces the normal quantile, and an effective number of independent cases replaces the number of cases. The
+/// effective number follows from the scatter of the groups: the scatter determines the variance of the mean, and the
+/// mean of that many independent cases has the same variance. If the groups do not scatter at all, the number of groups
+/// is used.
+///
+/// A few groups may agree by chance, and groups with other means may be missing from the sample ([`unobserved`]). The
+/// interval is therefore extended to the means that would result if the missing groups contained only zeros, or only
+/// ones.
 pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
     let count = groups.len() as f64;
     let cases: f64 = groups.iter().map(|(_, cases)| cases).sum();
@@ -157,7 +162,7 @@ pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
     }
 }
 
-/// Returns the interval of the mean of paired differences, one per group; `None` for fewer than two
+/// Returns the confidence interval of the mean of paired differences, one per group; `None` for fewer than two
 /// differences.
 ///
 /// Each difference lies between `-most` and `most`. The interval is Student's. It is widened like that of

@@ -36,7 +36,7 @@ const PRIOR_GROUPS: f64 = 0.6;
 /// Standard deviation of the normal prior distribution of `b₁`, the coefficient of the logarithm of the intensity.
 const PRIOR_SLOPE: f64 = 4.0;
 
-/// Scale of the prior distribution of `bₓ`, the departure of the share at a single intensity from the curve.
+/// Scale of the prior distribution of `bₓ`, by which the share at a single intensity departs from the curve.
 const PRIOR_LEVELS: f64 = 0.3;
 
 /// Index in a sample of `b`, the constant term of the regression: the middle of the values of `η` ([`Conditional`]).
@@ -87,7 +87,8 @@ pub struct Influence {
     /// Total index: the fraction of the variance of the share that remains if all other constants are known,
     /// including interactions.
     pub total: f64,
-    /// Mean width of the range in which the share still lies if this constant is known exactly.
+    /// Width of the range in which the share lies if this constant is known exactly and all other constants are
+    /// unknown; the mean over the values of this constant.
     pub width_if_known: f64,
 }
 
@@ -135,8 +136,8 @@ enum Prior {
     Normal(f64),
     /// Student's t distribution with [`FREEDOM`] degrees of freedom and a scale.
     Student(f64),
-    /// Normal distribution with a standard deviation that all such coefficients share and that is itself uncertain;
-    /// [`PRIOR_GROUPS`] is its scale.
+    /// Normal distribution. All coefficients with this prior distribution have the same standard deviation, which is
+    /// itself uncertain; [`PRIOR_GROUPS`] is the scale of the prior distribution of this standard deviation.
     Group,
 }
 
@@ -443,7 +444,8 @@ impl Conditional {
         mean(self.samples.iter().map(|sample| share(sample, &none)))
     }
 
-    /// Returns the influence of every constant, with the widths of ranges at the given level.
+    /// Returns the influence of every constant. The widths are those of ranges that contain the share with the
+    /// probability `level`.
     pub fn influences(&self, level: f64) -> Vec<Influence> {
         let totals = self.totals();
         let of = |(unknown, total): (usize, f64)| {
@@ -457,8 +459,8 @@ impl Conditional {
         totals.into_iter().enumerate().map(of).collect()
     }
 
-    /// Returns the interval of a difference: the share with one constant at the second deviate, minus the share with
-    /// that constant at the first deviate. All other constants are unknown.
+    /// Returns the credible interval of a difference: the share with one constant at the second deviate, minus the
+    /// share with that constant at the first deviate. All other constants are unknown.
     pub fn difference(&self, unknown: usize, deviates: [f64; 2], level: f64) -> Interval {
         let [from, to] = deviates.map(|deviate| self.shares_at(unknown, deviate));
         let mut differences: Vec<f64> = to.iter().zip(&from).map(|(b, a)| b - a).collect();
@@ -466,7 +468,7 @@ impl Conditional {
         ends(&differences, level)
     }
 
-    /// Returns the mean share, and its interval, with one constant fixed at a given deviate and all other
+    /// Returns the mean share, and its credible interval, with one constant fixed at a given deviate and all other
     /// constants unknown.
     pub fn at(&self, unknown: usize, deviate: f64, level: f64) -> (f64, Interval) {
         let mut shares = self.shares_at(unknown, deviate);

@@ -6,8 +6,7 @@ use crate::reader::Reader;
 use crate::tree::Table;
 use crate::writer::Writer;
 
-/// A type that is declared together with its table in an input file by
-/// [`section!`](crate::section).
+/// A type that [`section!`](crate::section) declares together with the definition of its table in an input file.
 pub trait Declared: Sized {
     /// Returns the definition of the table.
     fn section() -> &'static Section;

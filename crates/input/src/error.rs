@@ -30,7 +30,7 @@ pub enum Place {
         /// Name of the file as given.
         file: String,
     },
-    /// A default value, which appears nowhere in the input.
+    /// No place: the value is a default, which appears nowhere in the input.
     Unknown,
 }
 
@@ -326,8 +326,8 @@ fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
-/// Returns a part of a line that includes the column and fits a terminal, and the column and the
-/// width within this part. Control characters are replaced by spaces.
+/// Returns the part of a line around `column` that fits into a terminal, together with the column and the width of the
+/// fault in this part. Control characters are replaced by spaces.
 fn window(line: &str, column: usize, width: usize) -> (String, usize, usize) {
     const BEFORE: usize = 60;
     const TOTAL: usize = 100;

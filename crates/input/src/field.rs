@@ -61,7 +61,7 @@ pub struct Field {
 pub enum Default {
     /// The field is required.
     Required,
-    /// The value is optional and stays absent.
+    /// The field is optional and has no default value.
     Nothing,
     /// A value derived from other fields, described in words.
     Derived(&'static str),
@@ -110,8 +110,8 @@ pub enum Kind {
     Value,
     /// A list of single values whose kind depends on another field.
     Values,
-    /// One of a list of names, or a table. A name is short for a table in which the given key has the
-    /// name as its value.
+    /// One of a list of names, or a table. A name stands for a table with a single field, whose key is given and whose
+    /// value is the name.
     ChoiceOrTable(fn() -> Vec<&'static str>, &'static str, &'static Section),
 }
 

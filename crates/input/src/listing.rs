@@ -19,15 +19,15 @@ pub struct Setting {
     pub source: Source,
 }
 
-/// Source of a value, as far as it can be determined from the value itself.
+/// Source of a value. It is inferred from the value itself, since the table does not record where a value was stated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The value is written in the file, or in a file that it extends.
     Given,
     /// The value equals the default of the field.
     Default,
-    /// The value is written in the file, or the field was absent and the value was derived as
-    /// described by the text.
+    /// The field has a derived default, which the text describes. The value is either this default, or was written in
+    /// the file.
     Derived(&'static str),
 }
 

@@ -50,7 +50,7 @@ pub enum TableError {
         file: String,
         /// Number of the line, from 1.
         line: usize,
-        /// Column as named in the header; `None` if the whole line is meant.
+        /// Name of the column, as in the header; `None` if the error concerns the whole line.
         column: Option<String>,
         /// Expected content.
         expected: Box<str>,

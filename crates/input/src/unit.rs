@@ -126,7 +126,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     UNITS.iter().map(|unit| unit.0)
 }
 
-/// An error in a unit expression; the text that contains the expression is not included.
+/// An error in a unit expression, without the text that contains the expression.
 pub(crate) enum UnitError {
     Unknown { unit: String, nearest: Option<String> },
     Malformed(&'static str),

@@ -5,7 +5,8 @@
 pub enum Orientation {
     /// In the horizontal plane.
     Horizontal,
-    /// Along gravity; positive upward after reading.
+    /// Perpendicular to the ground plane. Readers reverse channels that are positive downward, so that positive values
+    /// point upward.
     Vertical,
 }
 

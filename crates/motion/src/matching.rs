@@ -373,7 +373,7 @@ impl<'a> Work<'a> {
         ranges
     }
 
-    /// Returns the approximate fit of the spectrum, at every second checked period.
+    /// Compares the approximate spectrum with the target at every second checked period.
     pub(crate) fn fit(&self, acceleration: &[f64]) -> Fit {
         let half = |all: &[f64]| all.iter().copied().step_by(2).collect::<Vec<f64>>();
         let (periods, goal) = (half(&self.checked), half(&self.checked_goal));

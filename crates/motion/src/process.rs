@@ -46,10 +46,9 @@ pub struct Processing {
     pub detrend: bool,
     /// Length of the cosine taper at each end, as a fraction of the record; 0 for no taper.
     pub taper: f64,
-    /// High-pass corner (Hz). A corner below one over the duration is raised to one over the
-    /// duration.
+    /// High-pass corner (Hz). A corner below the reciprocal of the duration is raised to this reciprocal.
     pub high_pass: Option<f64>,
-    /// Low-pass corner (Hz), from one over the duration to the Nyquist frequency.
+    /// Low-pass corner (Hz); at least the reciprocal of the duration, and below the Nyquist frequency.
     pub low_pass: Option<f64>,
     /// Order `n` of the Butterworth filter, applied forward and backward: gain
     /// `1/(1 + (fc/f)^(2n))`, zero phase, half amplitude at the corner.
@@ -135,13 +134,13 @@ impl Processing {
             low >= slowest && low < nyquist,
             "low-pass corner (Hz)",
             format!(
-                "at least one over the duration, {slowest:.4} Hz, and below the Nyquist frequency, \
-                 {nyquist} Hz"
+                "at least the reciprocal of the duration, {slowest:.4} Hz, and below the Nyquist \
+                 frequency, {nyquist} Hz"
             ),
             low,
         )?;
         let Some(high) = self.high_pass_used(time_step, samples) else { return Ok(()) };
-        let what = "high-pass corner (Hz), at least one over the duration";
+        let what = "high-pass corner (Hz), at least the reciprocal of the duration";
         MotionError::require(high < low, what, format!("below the low-pass corner, {low} Hz"), high)
     }
 
@@ -213,15 +212,15 @@ impl Processing {
         steps.push(format!("mean of {of} removed, {mean:.3e} m/s2"));
     }
 
-    /// Pads and filters the accelerations. Returns the time (s) by which the recorded part is
-    /// delayed by the leading pad.
+    /// Pads and filters the accelerations. Returns the length (s) of the leading pad, which delays the recorded part.
     fn filter(&self, time_step: f64, a: &mut Vec<f64>, steps: &mut Vec<String>) -> f64 {
         let corner = self.high_pass_used(time_step, a.len());
         if let (Some(requested), Some(used)) = (self.high_pass, corner)
             && used > requested
         {
             steps.push(format!(
-                "high-pass corner raised from {requested} to {used:.4} Hz, one over the duration"
+                "high-pass corner raised from {requested} to {used:.4} Hz, the reciprocal of the \
+                 duration"
             ));
         }
         let slowest = corner.or(self.low_pass).unwrap_or(1.0);
@@ -337,7 +336,7 @@ impl Residuals {
     }
 }
 
-/// Returns the number of samples before the first arrival, at most 5 s; `None` if there is less
+/// Returns the number of quiet samples before the first arrival, limited to 5 s; `None` if the quiet part is shorter
 /// than half a second.
 ///
 /// The arrival is the first sample that differs from the mean of the first half second by more than

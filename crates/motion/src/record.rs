@@ -88,7 +88,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Adds a peak acceleration stated in a header in units of `factor` m/s², with the peak of the
+    /// Adds a peak acceleration that the header states in units of `factor` m/s², together with the actual peak of the
     /// samples.
     pub(crate) fn state_peak(&mut self, stated: Option<Printed>, factor: f64) {
         let measured = math::peak(&self.acceleration);

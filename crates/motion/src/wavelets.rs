@@ -14,7 +14,7 @@ const WATCHED: f64 = 0.85;
 /// Weight of a constrained extremum that does not exceed the target.
 const WATCHED_WEIGHT: f64 = 0.4;
 
-/// Largest number of times that the system of a round is solved, because each solution may raise
+/// Largest number of solutions of the linear system in one round. The system is solved again whenever a solution raises
 /// further extrema above the target.
 const BOUNDING: usize = 5;
 /// Largest applied fraction of a correction. The fraction is doubled after a success and halved after a
@@ -289,8 +289,8 @@ impl Group {
         Bank::new(&steps)
     }
 
-    /// Returns the displacement of oscillator `k` at `since` samples after the start of a wavelet.
-    /// It is computed from `bank`, the state after `whole` strides of the wavelet.
+    /// Returns the displacement of oscillator `k` at `since` samples after the start of a wavelet. `bank` holds the
+    /// state of the oscillators after `whole` strides of the wavelet.
     fn on(&self, k: usize, bank: &Bank, wavelet: &Wavelet, whole: usize, since: usize) -> f64 {
         let (u, v) = (bank.u[k], bank.v[k]);
         let left = since - whole * wavelet.stride;

@@ -153,7 +153,7 @@ fn unreasonable_settings_are_refused() {
         Processing { high_pass: Some(60.0), ..Processing::none() },
         Processing { high_pass: Some(f64::NAN), ..Processing::none() },
         Processing { low_pass: Some(0.0), ..Processing::none() },
-        // The corner is below one over the duration of 1 s; the pads would exceed the memory.
+        // The corner is below the reciprocal of the duration of 1 s; the pads would exceed the memory.
         Processing { low_pass: Some(0.99), ..Processing::none() },
         Processing { low_pass: Some(1e-9), ..Processing::none() },
         Processing { low_pass: Some(1e-30), ..Processing::none() },
@@ -168,12 +168,12 @@ fn unreasonable_settings_are_refused() {
     let chain = Processing { low_pass: Some(1e-9), ..Processing::none() };
     let message = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
     assert!(
-        message.starts_with("low-pass corner (Hz): expected at least one over the duration, 1")
+        message.starts_with("low-pass corner (Hz): expected at least the reciprocal of the duration, 1")
     );
     let chain = Processing { high_pass: Some(0.1), low_pass: Some(1.0), ..Processing::none() };
     let message = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
     assert!(
-        message.contains("at least one over the duration: expected below the low-pass"),
+        message.contains("at least the reciprocal of the duration: expected below the low-pass"),
         "{message}"
     );
     let whole = Processing { mean: MeanRemoval::Whole, ..Processing::none() };

@@ -34,7 +34,7 @@ pub enum IntensityMeasure {
     /// Cumulative absolute velocity (m/s) over those one-second intervals in which `|a|` exceeds
     /// 0.025 g (EPRI 1991).
     CavStandardized,
-    /// Time during which the Arias intensity grows from one fraction of its final value to another (s)
+    /// Time (s) during which the Arias intensity grows from one fraction of its final value to another fraction
     /// (Trifunac and Brady 1975).
     SignificantDuration {
         /// Start of the duration as a fraction of the Arias intensity, such as 0.05.
@@ -42,7 +42,7 @@ pub enum IntensityMeasure {
         /// End of the duration as a fraction of the Arias intensity, such as 0.95.
         to: f64,
     },
-    /// Time between the first and the last crossing of `threshold` by `|a|` (s).
+    /// Time (s) between the first and the last crossing of `threshold` by `|a|`.
     BracketedDuration {
         /// Threshold of the acceleration (m/s²), customarily 0.05 g.
         threshold: f64,
@@ -61,8 +61,8 @@ pub enum IntensityMeasure {
     /// Velocity spectrum intensity `∫ PSV dT` from 0.1 to 2.5 s at 5 % damping (m) (Von Thun et al.
     /// 1988).
     Vsi,
-    /// Mean period `Σ(C²/f)/ΣC²` over 0.25 to 20 Hz (s), with Fourier amplitudes `C` (Rathje et al.
-    /// 1998).
+    /// Mean period `Σ(C²/f)/ΣC²` (s), with the Fourier amplitudes `C` at the frequencies `f` from 0.25 to 20 Hz (Rathje
+    /// et al. 1998).
     MeanPeriod,
     /// Fajfar index `PGV · D5-95^0.25` (m/s^0.75) (Fajfar et al. 1990).
     Fajfar,

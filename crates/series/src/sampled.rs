@@ -169,7 +169,7 @@ impl Sampled {
         math::peak(&self.acceleration)
     }
 
-    /// Returns the largest absolute velocity at the samples (m/s), as it is published with records.
+    /// Returns the largest absolute velocity at the samples (m/s). Published values are computed in the same manner.
     pub fn pgv(&self) -> f64 {
         math::peak(&self.velocity)
     }
@@ -183,8 +183,8 @@ impl Sampled {
     /// sampled velocities by the trapezoidal rule, as for published values and for the displacement
     /// files of PEER.
     ///
-    /// The peak of the exact displacement, [`Sampled::pgd`], is larger: by 0.4 % for a time step of
-    /// 0.02 s and a motion with a period of 0.3 s at the peak.
+    /// The peak of the exact displacement, [`Sampled::pgd`], is larger: by 0.4 % if the time step is 0.02 s and the
+    /// motion has a period of 0.3 s around its peak.
     pub fn pgd_by_trapezoid(&self) -> f64 {
         math::peak(&running_trapezoid(self.time_step, &self.velocity))
     }

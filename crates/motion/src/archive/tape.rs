@@ -17,7 +17,7 @@ pub(super) fn is_tar(bytes: &[u8]) -> bool {
 /// If the archive is truncated within a file, `take` gets `None` as the content of this file.
 ///
 /// # Errors
-/// If the archive is damaged. The inner result is the error of `take`.
+/// The outer result is an error if the archive is damaged; the inner result is an error if `take` returns one.
 pub(super) fn each_file<E>(
     archive: &[u8],
     mut take: impl FnMut(&str, Option<&[u8]>) -> Result<bool, E>,

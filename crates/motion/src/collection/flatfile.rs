@@ -34,8 +34,8 @@ pub struct Flatfile {
     stations: BTreeMap<(String, String, String), FlatRow>,
 }
 
-/// Names of the column of record sequence numbers, in the published table and in its abridged forms.
-/// Each of the following constants without a comment of its own holds the names of another column.
+/// Names of the column that contains the record sequence number: first in the published table, then in its abridged
+/// forms. The constants below without a comment do the same for other columns.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
 const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
 const STATION: &[&str] = &["station name", "station", "station_code"];

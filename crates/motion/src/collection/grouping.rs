@@ -93,8 +93,8 @@ fn key(file: &str) -> (String, String) {
     named.map_or_else(|| (file.to_owned(), file.to_owned()), |name| (name.clone(), name))
 }
 
-/// Removes the direction at the end of a name: one or two letters after a separator, or two letters
-/// after a digit.
+/// Returns a name without the direction at its end; `None` if the name does not end in a direction. A direction is one
+/// or two letters after a separator, or two letters after a digit.
 fn direction_off(stem: &str) -> Option<&str> {
     let upper = stem.to_ascii_uppercase();
     let marked = |direction: &&str| {
@@ -111,7 +111,7 @@ fn direction_off(stem: &str) -> Option<&str> {
     stem.get(..stem.len() - found.len())
 }
 
-/// Removes the component from the name of a PEER file.
+/// Returns the name of a PEER file without the component at its end, such as `-UP` or an azimuth.
 fn without_component(stem: &str) -> String {
     let upper = stem.to_ascii_uppercase();
     for ending in ["-UP", "-DWN", "-DN", "-VER", "-V", "-N", "-E", "-S", "-W", "-NS", "-EW", "UP"] {
@@ -128,7 +128,8 @@ fn without_component(stem: &str) -> String {
     }
 }
 
-/// Replaces the direction in the SEED channel code of a name by a question mark.
+/// Replaces the direction, which is the last letter of the SEED channel code in a file name, with a question mark.
+/// Returns `None` if the name contains no SEED channel code.
 fn seed(file: &str) -> Option<String> {
     let mut start = 0;
     for part in file.split_inclusive(['.', '_', '-']) {

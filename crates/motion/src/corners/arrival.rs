@@ -4,9 +4,9 @@ use crate::math;
 
 /// Acceleration at which strong motion has certainly begun, as a fraction of the peak acceleration.
 const SURE: f64 = 0.2;
-/// Length by which a search extends beyond the previous estimate of the arrival, as a fraction of the
-/// time before the strong motion. The first estimate is the beginning of the strong motion, the second
-/// is the result of the first search.
+/// Time between the latest estimate of the arrival and the end of the next search, as a fraction of the time before the
+/// strong motion. Before the first search, the estimate is the beginning of the strong motion; before the second
+/// search, it is the result of the first search.
 const BEHIND: f64 = 0.1;
 
 /// Returns the time (s) from the first sample to the first arrival; 0 if the shaking starts with

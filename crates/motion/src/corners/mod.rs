@@ -94,12 +94,11 @@ struct Spectra {
 /// shaking minus this product. The signal-to-noise ratio is divided by `r`, so that the criterion
 /// is stricter if the noise is short.
 ///
-/// The corners are the ends of the first frequency band that has a sufficient ratio and covers the
-/// frequency range of the criterion. The high-pass corner has two lower limits: one over the duration,
-/// and the foot of the ratio. To find the foot, only frequencies below the peak of the ratio are
-/// considered; the foot is the frequency at which the ratio is smallest in this range. The low-pass
-/// corner has two upper limits: 0.75 of the Nyquist frequency, and 40 Hz. The automatic processing of
-/// the USGS uses this rule (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
+/// The corners are the ends of the first frequency band that has a sufficient ratio and covers the frequency range of
+/// the criterion. The high-pass corner has two lower limits: the reciprocal of the duration, and the foot of the ratio.
+/// To find the foot, only frequencies below the peak of the ratio are considered; the foot is the frequency at which
+/// the ratio is smallest in this range. The low-pass corner has two upper limits: 0.75 of the Nyquist frequency, and 40
+/// Hz. The automatic processing of the USGS uses this rule (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
 ///
 /// # Errors
 /// If there is less than 1 s of noise or 5 s of shaking, or if the criterion is not satisfied.
@@ -194,7 +193,7 @@ impl Spectra {
             .zip(smooth(noise))
             .map(|(all, noise)| (all - stretch * noise) / (stretch * noise) / stretch)
             .collect::<Vec<f64>>();
-        // Frequencies below one over the length of the shaking cannot be resolved.
+        // Frequencies below the reciprocal of the length of the shaking cannot be resolved.
         let known = 1.0 / (shaking.len() as f64 * dt);
         let first = centers.partition_point(|f| *f < known);
         Self { frequency: centers[first..].to_vec(), ratio: ratio[first..].to_vec() }

@@ -86,7 +86,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         record.warn(
             None,
             format!(
-                "no \"(gal)\" in the header; cm/s2 is the unit of this format (\"{}\")",
+                "the header does not state \"(gal)\"; cm/s2, the unit of this format, was assumed (\"{}\")",
                 shorten(&source.text(0))
             ),
         );

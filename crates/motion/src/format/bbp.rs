@@ -1,10 +1,9 @@
 //! Reader of Broadband Platform text (SCEC, `.000`, `.090`, `.ver`).
 //!
-//! The first line contains the station and the component. The second line contains the number of
-//! samples, the time step and times. Values separated by blanks follow. Accelerations and
-//! velocities have the same layout, and the files state neither quantity nor unit, so the caller
-//! must provide the unit. Files with four columns including time (`.bbp`) are read as plain
-//! columns.
+//! The first line contains the station and the component. The second line contains eight numbers; the first two are the
+//! number of samples and the time step. The values follow, separated by blanks. Accelerations and velocities have the
+//! same layout, and the files state neither quantity nor unit, so the caller must provide the unit. Files with four
+//! columns including time (`.bbp`) are read as plain columns.
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
 use super::{Format, Hints};

@@ -200,14 +200,15 @@ pub(crate) fn station_name(source: &Source<'_>, line: usize) -> String {
     text.trim_start().split("   ").next().unwrap_or("").trim().to_owned()
 }
 
-/// Parses the start, such as `START TIME:  7/06/19, 03:19:37.0 UTC`, from the text lines. A film
-/// recorder starts at its trigger time.
+/// Parses the start time, such as `START TIME:  7/06/19, 03:19:37.0 UTC`, from the text lines. A film recorder starts
+/// at its trigger time.
 pub(crate) fn start(source: &Source<'_>, first: usize) -> Option<Utc> {
     (first..first + 6)
         .find_map(|line| Utc::in_header(&start_in(source, line)?, DateOrder::MonthFirst))
 }
 
-/// Returns the line and the text of the first stated start, even if the text cannot be parsed.
+/// Returns the first start time stated in the header, as the line number and the text, even if the text cannot be
+/// parsed.
 pub(crate) fn stated_start(source: &Source<'_>, first: usize) -> Option<(usize, String)> {
     (first..first + 6).find_map(|line| Some((line, start_in(source, line)?)))
 }

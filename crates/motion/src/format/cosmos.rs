@@ -1,7 +1,7 @@
 //! Reader of COSMOS format 1.20, volumes 0 (counts), 1 and 2.
 //!
-//! The number of items in a block, and their Fortran format, are taken from the line that states them.
-//! Spec: Strong-Motion Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
+//! The first line of each block of numbers states their count and their Fortran format; the reader uses both. Spec:
+//! Strong-Motion Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
 
 use super::source::{
     Columns, GAL, LARGEST_ACCELERATION, Printed, Source, latin1, leading_number, quoted, shorten,

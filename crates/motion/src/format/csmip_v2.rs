@@ -145,8 +145,9 @@ fn unit(
     })
 }
 
-/// Returns the time step (s) on the data line. If the time step in real 61 of the header agrees
-/// with it within the printed digits, returns the value of real 61.
+/// Returns the time step (s). The data line states the step, and real number 61 of the header may state it with more
+/// digits. Returns the number from the header if the two agree within the printed digits, else the number on the data
+/// line.
 fn time_step(source: &Source<'_>, first: usize, data: usize) -> Result<f64, ReadError> {
     let printed = source
         .printed_after(data, "spaced at")

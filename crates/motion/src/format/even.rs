@@ -9,7 +9,7 @@ use crate::record::Record;
 pub(crate) struct Timed {
     /// Line of the first row, counted from 0.
     pub(crate) first_line: usize,
-    /// Number of times on each line of the file, each with its values.
+    /// Number of samples on each line of the file; a sample is a time with its values.
     pub(crate) per_line: usize,
     /// Times (s).
     pub(crate) time: Vec<f64>,
@@ -34,8 +34,8 @@ impl Timed {
 
 /// Returns the constant time step (s) of the columns, and the columns sampled at this step.
 ///
-/// If the times are evenly spaced within their printed digits, the step follows exactly from them.
-/// Otherwise, the values are interpolated linearly at a finer step, with a warning.
+/// If the times are evenly spaced to within their printed digits, the exact step is derived from them. Otherwise, the
+/// values are interpolated linearly at a finer step, with a warning.
 pub(crate) fn even_steps(
     source: &Source<'_>,
     record: &mut Record,
@@ -132,8 +132,9 @@ fn slack(time: f64, first: f64) -> f64 {
     1e-9 * (time - first).abs() + 4.0 * f64::EPSILON * time.abs()
 }
 
-/// Returns a round step such that all times are evenly spaced within one unit of their last printed
-/// digit; `None` if there is no such step. Truncated times have such deviations.
+/// Returns a time step (s), the reciprocal of a whole number, that fits all times to within one unit of their last
+/// printed digit; `None` if there is no such step. Deviations of up to one unit occur if a program truncates the times
+/// instead of rounding them.
 fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
     let step = 1.0 / (1.0 / mean).round();
     let strays = |(k, t): (usize, &f64)| {

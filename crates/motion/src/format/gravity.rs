@@ -5,8 +5,8 @@ use crate::format::Source;
 use crate::math::{STANDARD_GRAVITY, peak, take_mean};
 use crate::record::{Channel, Quantity, Record};
 
-/// Largest relative difference between a mean and gravity at which the mean is still considered gravity.
-/// The tolerance covers calibration errors and the tilt of a single axis.
+/// Largest relative difference between the mean acceleration and gravity at which the mean is treated as gravity. The
+/// tolerance covers calibration errors and the tilt of a single axis.
 const TOLERANCE: f64 = 0.05;
 /// Largest mean (m/s²) of a ground motion over a whole record; a larger mean is an offset.
 const LARGEST_MEAN: f64 = 0.5 * STANDARD_GRAVITY;
@@ -14,7 +14,8 @@ const LARGEST_MEAN: f64 = 0.5 * STANDARD_GRAVITY;
 const LARGEST_ONE_SIDED: f64 = 0.05 * STANDARD_GRAVITY;
 /// Shortest record (s) whose mean is checked; analytic pulses are shorter.
 const SHORTEST: f64 = 2.0;
-/// Smallest mean (m/s²) of an axis that is considered a component of gravity.
+/// If gravity is spread over several axes, the mean of an axis is subtracted only if its magnitude exceeds this value
+/// (m/s²).
 const SMALLEST_PART: f64 = 0.05;
 /// Largest angle (degrees) between gravity and an axis that is considered vertical.
 const LARGEST_TILT: f64 = 3.0;

@@ -12,7 +12,7 @@ use crate::utc::Utc;
 /// rounding.
 const LARGEST_DIFFERENCE: f64 = 0.005;
 
-/// Options of the caller, as a reader uses them.
+/// Options of the caller, with a mark for each option that a reader has used.
 ///
 /// A reader queries only information that the file does not state. Unused options are ignored and
 /// reported.
@@ -39,12 +39,11 @@ impl<'a> Hints<'a> {
         }
     }
 
-    /// Returns all options.
     pub(super) fn options(&self) -> &'a ReadOptions {
         self.options
     }
 
-    /// Adds the options that another reader has used to the options that this reader has used.
+    /// Adds the marks of another reader to the marks of this reader.
     pub(super) fn used_as(&self, other: &Hints<'_>) {
         for (mine, theirs) in [
             (&self.unit, &other.unit),

@@ -51,7 +51,7 @@ fn unpacked(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
         return Err(inside.error(
             (),
             Refusal::Unrecognized,
-            "a record, or an archive inside one other archive at most",
+            "a record, or an archive nested in at most one other archive",
             "a more deeply nested archive",
             "unpack it and give its content",
         ));
@@ -211,7 +211,11 @@ fn several(source: &Source<'_>, groups: &[RecordFiles], found: &[(String, Record
         (),
         Refusal::SeveralRecords,
         "an archive of one record",
-        format!("several: {} are two of up to {} records, judged by their names", named.join(" and "), groups.len()),
+        format!(
+            "several: {}; according to the file names, there are up to {} records",
+            named.join(" and "),
+            groups.len()
+        ),
         format!(
             "give the path of one file inside, such as {}/{}, or use the archive as a folder of records",
             source.name,

@@ -24,8 +24,8 @@ pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", shorten(text))
 }
 
-/// Describes the start of a binary file; returns `None` for text that contains a stray byte after
-/// its start.
+/// Describes a binary file by its first bytes; returns `None` for a text file that contains a stray byte after its
+/// start.
 pub(crate) fn binary(bytes: &[u8]) -> Option<String> {
     let head = bytes.get(..512).unwrap_or(bytes);
     let odd = head.iter().filter(|&&b| b < 0x09 || (0x0E..0x20).contains(&b)).count();

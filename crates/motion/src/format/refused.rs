@@ -148,7 +148,7 @@ pub(super) fn headings_alone(source: &Source<'_>) -> Option<usize> {
     (names && short && !(0..source.lines.len()).any(numbers)).then_some(last)
 }
 
-/// Declares a format that is recognized by its first bytes and refused by name.
+/// Declares a format that is recognized and refused; the error message states the name of the format.
 macro_rules! refused_by_name {
     ($constant:ident, $name:literal, $what:literal, $fits:expr, $remedy:literal) => {
         pub(crate) const $constant: Format = Format {

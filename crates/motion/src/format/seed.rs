@@ -72,8 +72,8 @@ pub(super) fn as_acceleration(
         record.warn(
             None,
             format!(
-                "channel {label} is of a {quantity} sensor according to its metadata: accelerations are its \
-                 derivatives; strong shaking may have driven such a sensor beyond its range"
+                "according to its metadata, channel {label} was recorded by a {quantity} sensor: the accelerations \
+                 were obtained by differentiation; strong shaking may have exceeded the range of such a sensor"
             ),
         );
     }

@@ -322,8 +322,8 @@ impl<'a> Source<'a> {
             .map(|(values, next, _)| (values, next))
     }
 
-    /// Reads numbers like [`Source::fixed`], if the header states their count. Further numbers, on
-    /// the last line and on the lines after it, are ignored with a warning.
+    /// Reads as many numbers as the header states, like [`Source::fixed`]. Excess numbers on the last line and on the
+    /// lines after it are ignored with a warning.
     pub(crate) fn counted(
         &self,
         record: &mut Record,

@@ -52,7 +52,8 @@ pub fn npz(record: &Record) -> Result<Vec<u8>, MotionError> {
     })
 }
 
-/// Returns the part of an array name that identifies the channel.
+/// Converts a channel name to the first part of the names of its arrays: characters other than ASCII letters and digits
+/// become underscores.
 pub(crate) fn array_name(channel: &str) -> String {
     channel.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
 }

@@ -50,9 +50,9 @@ pub enum NCh2745Soil {
 /// damping.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TargetSpectrum {
-    /// ASCE/SEI 7-16, section 11.4.6: design spectrum from two ordinates and the long-period
-    /// transition. Other damping ratios use the factor `B_M` of table 17.5-1, except for the peak
-    /// ground acceleration.
+    /// ASCE/SEI 7-16, section 11.4.6: design spectrum from two ordinates and the long-period transition. If the damping
+    /// ratio is not 0.05, the ordinates are divided by the factor `B_M` of table 17.5-1; this does not apply to the
+    /// peak ground acceleration.
     Asce7 {
         /// Short-period spectral acceleration `S_DS` (g).
         sds: f64,

@@ -1,4 +1,5 @@
-//! The other horizontal component of a record, which shakes a stack in its other vertical plane.
+//! Selects the second horizontal component of a record: the first component shakes a stack in one vertical plane, and
+//! the second component shakes it in the perpendicular vertical plane.
 
 use super::record::read;
 use super::{GroundError, component_of, of_spec};

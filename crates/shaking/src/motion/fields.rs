@@ -21,7 +21,7 @@ impl Named for PulseKind {
         ("mavroeidis-papageorgiou", Self::MavroeidisPapageorgiou { gamma: 0.0, phase: 0.0 }),
     ];
 
-    /// Returns the name of the form without its parameters, which are separate fields.
+    /// Returns the name of the form of a pulse, without the parameters of the form, which are separate fields.
     fn name(self) -> &'static str {
         let same = |form: &Self| discriminant(form) == discriminant(&self);
         Self::NAMES.iter().find(|(_, form)| same(form)).map_or("", |(name, _)| name)

@@ -147,7 +147,7 @@ fn read_measured(reader: &Reader<'_>) -> Result<Option<Scale>, InputError> {
     Ok(Some(Scale::Measure { measure, value: quantity.value, of }))
 }
 
-/// Returns the dimension of a measure that can be a scaling target.
+/// Returns the dimension of a measure; `None` if a scenario cannot scale the motion to this measure.
 fn dimension_of(measure: IntensityMeasure) -> Option<Dimension> {
     match measure.unit() {
         "m/s2" => Some(Dimension::ACCELERATION),

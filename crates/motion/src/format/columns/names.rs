@@ -17,7 +17,7 @@ pub(super) enum Holds {
     /// Row numbers.
     Index,
     Motion(Quantity),
-    /// A name that is only a direction, such as `EW`.
+    /// Values of one component. The name of the column is only a direction, such as `EW`.
     Component,
     /// A period, a frequency or a spectral ordinate.
     Spectrum,
@@ -149,11 +149,10 @@ fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
     })
 }
 
-/// Returns the first part of a line that is not a unit, if the other parts show that the line is a
-/// row of units.
+/// Returns the first word that is not a known unit, if the line is otherwise a row of units.
 ///
-/// More than half of the parts must be units. Exactly half of the parts is sufficient unless the
-/// other parts are names, as in `time, g`.
+/// A line is a row of units if more than half of its words are units. Exactly half of the words is sufficient, unless
+/// the other words are names, as in `time, g`.
 fn damaged_unit(text: &str, width: usize) -> Option<String> {
     splits(plain(text)).into_iter().find_map(|(separated, parts)| {
         if parts.len() != width || parts.iter().any(String::is_empty) {
@@ -250,9 +249,9 @@ fn merged(parts: Vec<String>) -> Vec<String> {
     out
 }
 
-/// Returns `true` if the names are column names of a table, which requires that all names are
-/// quantities. One column may have any name if time is the first column or the separator does not
-/// occur in prose.
+/// Returns `true` if the words of a line are column names rather than prose. `separated` is `true` if the separator
+/// between the words does not occur in prose. In general, every word must be the name of a quantity. Other words are
+/// allowed if `separated` is `true` and the first column contains times, row numbers or a spectrum.
 fn says_quantities(names: &[Name], separated: bool) -> bool {
     let says = |name: &Name| name.holds != Holds::Unknown;
     let leads = matches!(names[0].holds, Holds::Time | Holds::Index | Holds::Spectrum);

@@ -6,7 +6,7 @@ use crate::math;
 
 /// Number of rows that are examined to determine the number format.
 const ROWS: usize = 200;
-/// Minimum fraction of increasing steps in an unnamed first column of times.
+/// Fraction of the steps from row to row that must be positive if an unnamed first column is to count as times.
 const RISING: f64 = 0.95;
 
 /// Returns `true` if an unnamed column contains times or row numbers: it increases almost
@@ -157,8 +157,8 @@ pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
     })
 }
 
-/// Returns, for each column, whether its values are, within 1 %, the lengths of the vectors formed
-/// by all other columns, or by two or three adjacent columns.
+/// Returns one flag per column: `true` if the column contains the lengths of vectors whose components are other
+/// columns, within 1 %. These are all other columns, or two or three adjacent columns.
 pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
     let is_length = |at: usize| {
         let of = &columns[at];

@@ -55,7 +55,7 @@ pub(super) fn unit_of(
         {
             return Err(source.damaged(
                 first,
-                "a column of times named as such, or accelerations",
+                "a column of accelerations, or a time column with a name such as time (s)",
                 format!(
                     "a first column called {} whose values rise by {} from row to row",
                     quoted(label),

@@ -123,7 +123,7 @@ pub(super) const SAMPLING_KEYS: &[&str] = &[
 pub(super) const BARE: &[&str] =
     &["sampling", "muestreo", "campionamento", "amostragem", "abtastung", "delta"];
 
-/// Words next to a number with a unit of time that identify the number as the step.
+/// Words that identify a time on the same line, such as `5 ms`, as the time step.
 pub(super) const BESIDE_STEPS: &[&str] = &["interval", "step", "increment", "spac", "sampl"];
 
 /// Keywords for the number of samples.
@@ -189,7 +189,7 @@ pub(super) const PEAK_KEYS: &[&str] = &[
 pub(super) const COMPONENT_KEYS: &[&str] =
     &["component", "comp.", "comp", "orientation", "direction", "azimuth", "channel"];
 
-/// Words that change the meaning of the keyword that follows.
+/// Words before a keyword that change its meaning.
 pub(super) const OTHER_MEANING: &[&str] = &[
     "original",
     "orig",
@@ -205,7 +205,7 @@ pub(super) const OTHER_MEANING: &[&str] = &[
     "instrument",
 ];
 
-/// Words that follow the number of samples per second.
+/// Units of a sampling rate, as written after the number.
 pub(super) const RATE_MARKS: &[&str] = &[
     "sps",
     "samples/sec",
@@ -219,11 +219,11 @@ pub(super) const RATE_MARKS: &[&str] = &[
     "amostras por segundo",
 ];
 
-/// First letters of words for acceleration.
+/// Beginnings of the word for acceleration in several languages.
 pub(super) const ACCELERATIONS: &[&str] = &["acc", "acel", "beschl", "ivme"];
-/// First letters of words for velocity.
+/// Beginnings of the word for velocity in several languages.
 pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
-/// First letters of words for displacement.
+/// Beginnings of the word for displacement in several languages.
 pub(super) const DISPLACEMENTS: &[&str] =
     &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
 
