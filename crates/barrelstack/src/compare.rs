@@ -101,8 +101,8 @@ pub trait Comparable: Sized {
         observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
     ) -> Result<Self, RunFailure>;
 
-    /// Returns the largest share of variants that collapse in any plane (0 or 1 for a single run), and this plane. The
-    /// plane is `None` for a three-dimensional model and for a free scene.
+    /// Returns the share of variants that collapse (0 or 1 for a single run) in the plane in which this share is
+    /// largest, and this plane. The plane is `None` for a three-dimensional model and for a free scene.
     fn worst(&self) -> (f64, Option<View>);
 
     /// Returns these results as one side of a comparison, shown in the given plane if the scenario has it.
@@ -132,10 +132,10 @@ pub fn aligned<A: Comparable>(
     answers.into_iter().map(align).collect()
 }
 
-/// Returns the runs of the answers with their names.
+/// Converts each answer, given with its name, to one side of a comparison.
 ///
-/// If all answers have both planes, every run is shown in the same plane: the governing plane of the answer with the
-/// largest share of collapses.
+/// If all answers have both planes, every side shows the same plane: the governing plane of the answer with the largest
+/// share of collapses.
 pub fn sides<A: Comparable>(answers: Vec<(String, A)>) -> Vec<Side> {
     let all = answers.iter().map(|(_, answer)| answer.worst());
     let worst = all.reduce(|worst, one| if one.0 > worst.0 { one } else { worst });
@@ -278,9 +278,9 @@ pub enum CompareError {
     /// Two runs have equal inputs.
     #[error("{first} and {second} are the same run: all their inputs are equal")]
     Identical {
-        /// The first of the two.
+        /// Name of the first of the two runs.
         first: String,
-        /// The second of the two.
+        /// Name of the second of the two runs.
         second: String,
     },
 }

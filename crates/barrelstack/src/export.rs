@@ -33,8 +33,8 @@ const FILES_OF_PLANE: [&str; 5] =
 /// Maximum size (bytes) of a summary that is read.
 const SUMMARY_LIMIT: usize = 256 << 20;
 
-/// Maximum time that a run takes to write its files. A file that was modified later was changed by
-/// another program.
+/// Maximum time between the modification of the summary of a run and that of its other files. A file that was modified
+/// later was changed by another program.
 const AT_ONCE: Duration = Duration::from_secs(10);
 
 /// Error while writing output files.

@@ -297,7 +297,7 @@ impl Shell<'_> {
     }
 }
 
-/// Writes the translations of the texts of scripts into the page; nothing for English.
+/// Writes into the page the translations of the texts that its scripts use; writes nothing for English.
 fn hold_entries(out: &mut String, language: Language, scripts: &[&str]) {
     let entries = language.entries(scripts);
     if !entries.is_empty() {

@@ -83,7 +83,7 @@ struct Flow<'a> {
     document: &'a Document,
     size: [f64; 2],
     pages: Vec<Page>,
-    /// Distance (points) of the next block from the top of the last page.
+    /// Distance (points) of the next block from the top of the current page, which is the last.
     y: f64,
     names: Names,
     counter: Counter,

@@ -358,7 +358,7 @@ fn read(bytes: &[u8]) -> Result<Opened<'_>, String> {
     let length = usize::try_from(u32::from_le_bytes(*length)).unwrap_or(usize::MAX);
     let (head, mut rest) = rest.split_at_checked(length).ok_or_else(|| cut("its head"))?;
     let request: Request = serde_json::from_slice(head)
-        .map_err(|error| format!("the head of the request: {error}"))?;
+        .map_err(|error| format!("cannot read the head of the request: {error}"))?;
     let mut records = BTreeMap::new();
     for (path, length) in &request.records {
         let (record, after) = rest.split_at_checked(*length).ok_or_else(|| cut(path))?;

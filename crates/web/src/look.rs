@@ -1,4 +1,4 @@
-//! A resolved scenario before a run, and the catalog.
+//! A scenario with all defaults, as a page shows it before a run; and the catalog.
 
 use barrelstack::check::{Checked, check};
 use barrelstack::motion::GroundMotion;
@@ -38,7 +38,7 @@ impl Catalog {
     }
 }
 
-/// A resolved scenario before a run.
+/// A scenario with all defaults, as a page shows it before a run.
 #[derive(Serialize)]
 pub(crate) struct Looked {
     title: String,

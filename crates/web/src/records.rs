@@ -38,8 +38,8 @@ pub(crate) struct Motion {
     files: Vec<String>,
     /// Description of each channel.
     channels: Vec<String>,
-    /// Length in bytes of the combined file with all channels, in the data that follow; 0 if the
-    /// motion is one of the given files.
+    /// Length in bytes of the combined file of all channels, which follows the JSON; 0 if the motion is one of the
+    /// given files.
     length: usize,
 }
 

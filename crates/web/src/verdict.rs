@@ -89,7 +89,7 @@ pub(crate) fn results(
     for (plane, results) in (0..).zip(&mut results) {
         for (number, result) in all.iter().zip(results) {
             let trail = trails.remove(&(plane, *number));
-            result.trail = trail.ok_or_else(|| format!("variant {number} has no trail"))?;
+            result.trail = trail.ok_or_else(|| format!("no barrel paths of variant {number}"))?;
         }
     }
     Ok(results)

@@ -192,7 +192,7 @@ impl Section<'_> {
         bars
     }
 
-    /// Returns the bands that draw a tie, one for each rail or barrel.
+    /// Returns the bands that represent a tie in three dimensions, one for each rail or barrel.
     fn bands(&self, tie: &Tie) -> Vec<DepthTie> {
         let band = |away: f64| DepthTie {
             bodies: tie.bodies,

@@ -11,7 +11,7 @@ use super::{Plane, Spread};
 use crate::ensemble::CaseResult;
 use crate::scenario::{Basis, Damping, Friction, Interface, NormalLaw, StackInterfaces, Unknowns};
 
-/// Minimum effect of a decisive constant: the change of the share of collapses over the range of the constant.
+/// Smallest change of the share of collapses, over the range of a constant, for which the constant can be decisive.
 const DECISIVE: f64 = 0.2;
 
 /// Fractiles of a constant at which the share of collapses is given.
@@ -380,9 +380,12 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     Some(Fitted::of(&fitted, &constants))
 }
 
-/// Returns, for every draw of the uncertain constants, the share of collapses in the plane in which it is larger. Each
-/// draw also samples the error of the regression. The same draw has the same constants for all stacks with the same
-/// planes. `verdicts` holds the verdicts of the variants in every plane. Returns `None` in the same cases as [`range`].
+/// Returns, for every draw of the uncertain constants, the share of collapses in the plane in which more stacks
+/// collapse.
+///
+/// The share also has a random error, drawn from the error distribution of the regression. Draws with the same index
+/// have the same constants for all stacks with the same planes. `verdicts` holds the verdicts of the variants in every
+/// plane. Returns `None` in the same cases as [`range`].
 pub(super) fn draws(planes: &[Plane], verdicts: &[Vec<Option<bool>>]) -> Option<Vec<f64>> {
     let of = |(plane, verdicts): (&Plane, &Vec<_>)| Some(fit(plane, verdicts)?.0.shares());
     let shares = planes.iter().zip(verdicts).map(of).collect::<Option<Vec<Vec<f64>>>>()?;
@@ -419,8 +422,9 @@ fn fit(plane: &Plane, verdicts: &[Option<bool>]) -> Option<(Conditional, Vec<Dra
 }
 
 impl Spread {
-    /// Returns the constant whose measurement by a simple test narrows the range most, and the average width of the
-    /// remaining range; `None` if no measurement narrows the range by more than a tenth.
+    /// Returns the constant whose measurement by a simple test would narrow the range of the share of collapses most,
+    /// and the average width of the range after the measurement; `None` if no measurement would narrow the range by
+    /// more than a tenth.
     pub fn worth_measuring(&self) -> Option<(&Unknown, f64)> {
         let [low, high] = self.range?;
         let tested = self.decides.iter().filter(|one| one.test().is_some());

@@ -124,8 +124,8 @@ impl Plane {
         trial
     }
 
-    /// Returns the time (s) after the first loss of a seat at which trials end; `None` if they are
-    /// followed until everything is at rest.
+    /// Returns the time (s) after the first loss of a seat at which runs for the verdict ([`Plane::trial`]) end; `None`
+    /// if they continue until everything is at rest.
     pub fn counted_for(&self) -> Option<f64> {
         Some(after_collapse(&self.trial(0))).filter(|time| time.is_finite())
     }

@@ -30,7 +30,7 @@ pub use self::search::{ENOUGH, Judged, Verdicts};
 /// ratchets state about 500 daN (STF, standard tension force, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
-/// Number of variants that a thread takes at a time: as many as one bundle of SIMD lanes computes side by side.
+/// Number of variants that a thread takes at a time: as many as it computes side by side in SIMD lanes.
 const BATCH: usize = 8;
 
 described! {

@@ -30,9 +30,9 @@ impl Order {
     }
 }
 
-/// Compares two results by severity: a collapse is more severe than standing; of two collapses, the
-/// one with more fallen barrels, then the earlier one; of two standing stacks, the one with the
-/// larger drift.
+/// Compares two results by severity. A collapse is more severe than standing. Of two collapses, the one with more
+/// fallen barrels is more severe or, if the numbers are equal, the earlier one. Of two standing stacks, the one with
+/// the larger drift is more severe.
 fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
     let sooner = |result: &CaseResult| -collapse(result).map_or(f64::INFINITY, |(_, time)| time);
     let drift = |result: &CaseResult| result.demands.top_drift_ratio.unwrap_or(0.0);

@@ -19,13 +19,13 @@ use super::super::spread::LEVEL;
 /// Share (%) of variants that must stand in every plane.
 pub const ENOUGH: u32 = 95;
 
-/// Number of variants in the first block of a change: as many as one bundle of SIMD lanes computes side by side.
+/// Number of variants in the first block of a change: as many as one core computes side by side in SIMD lanes.
 const FIRST: u32 = 8;
 
 /// Number of variants in every later block.
 const BLOCK: u32 = 16;
 
-/// Candidates of a search, and the number of variants of each.
+/// Candidates of a search, and the number of variants that are simulated for each.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
     /// Number of changes of height. They come first, the highest stack first, and are tried until
@@ -33,7 +33,7 @@ pub(super) struct Plan {
     pub(super) heights: usize,
     /// Number of strap pretensions, from loose to tight; they follow the changes of height.
     pub(super) straps: usize,
-    /// Number of variants of each change.
+    /// Number of variants that are simulated for each change.
     pub(super) variants: u32,
     /// Number of planes; enough variants must stand in each.
     pub(super) planes: usize,
@@ -51,7 +51,7 @@ impl Plan {
         1.0 - (1.0 - LEVEL) / (self.changes() * self.planes).max(1) as f64
     }
 
-    /// Returns the next block of variants, numbered from zero.
+    /// Returns the block of variants that follows the first `ran` variants; variants are numbered from zero.
     fn block(&self, ran: u32) -> Range<u32> {
         let size = if ran == 0 { FIRST } else { BLOCK };
         ran..ran.saturating_add(size).min(self.variants)

@@ -3,11 +3,13 @@
 use super::{Placed, percent};
 use crate::variants::{ShareAt, Spread};
 
-/// Largest width of the range of shares for which the sentence states that the uncertain constants matter little.
+/// Largest width of the range of shares of collapses for which the sentence states that the uncertain constants matter
+/// little.
 const NARROW: f64 = 0.1;
 
-/// The sentence also states the share at the median of a constant if this share lies outside the shares at the 5 % and
-/// 95 % fractiles by at least this difference.
+/// Minimum distance between the share of collapses at the median of a constant and the interval between the shares at
+/// its 5 % and 95 % fractiles. Only a share at the median that lies outside this interval by at least this distance is
+/// stated.
 const BEYOND: f64 = 0.1;
 
 /// Describes the range of the share as the uncertain constants vary, and the decisive constant, such as
