@@ -201,7 +201,7 @@ pub fn share_of(ensemble: Option<&Spread>, outcome: &Outcome) -> f64 {
 }
 
 impl Side {
-    /// Returns a single run in a plane, without variants and without another plane.
+    /// Creates one side of a comparison from a single run in a plane, without variants and without another plane.
     pub fn of_run(name: String, run: &Run, summary: Summary) -> Self {
         let assembly = &run.assembly;
         let recorded = |values: Vec<f64>| [run.recording.times.clone(), values];

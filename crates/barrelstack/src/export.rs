@@ -247,8 +247,7 @@ impl Folder {
         written.map_err(|(path, error)| ExportError::refused(&path, &error))
     }
 
-    /// Rewrites the report with an embedded page that contains the program and starts with this
-    /// scenario.
+    /// Rewrites the report so that it embeds `page`, which contains the program and starts with the scenario.
     ///
     /// # Errors
     /// When a file cannot be written.

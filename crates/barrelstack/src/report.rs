@@ -60,7 +60,7 @@ pub fn answer_document(answer: &Answer) -> Document {
     page(&decides.run, &decides.summary, variants)
 }
 
-/// Returns the moving picture of the run of an answer, in each of its planes.
+/// Returns the moving picture of the run that an answer shows, in each of its planes.
 pub fn stage(answer: &Answer) -> Block {
     let Answer { decides: Shown { run, summary, variants, .. }, other, .. } = answer;
     let scene = drawing::scene_among(run, variants.as_ref());

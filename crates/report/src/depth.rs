@@ -145,8 +145,8 @@ pub struct Depth {
     /// force of zero is not drawn. The packed data are smallest if a contact has the same position in the list of every
     /// frame.
     pub forces: Vec<Vec<[Point3; 2]>>,
-    /// For each pane of the player, the indices of the axes that point right and up in it; the panes show the forces in
-    /// these axes.
+    /// For each pane of the player, the indices of the axes that point right and up in it; the pane shows the
+    /// components of forces along these axes.
     pub panes: Vec<[usize; 2]>,
 }
 

@@ -60,7 +60,7 @@ macro_rules! kinds {
                 match self { $(Self::$kind => concat!("plan ", $class)),* }
             }
 
-            /// Character that fills the region in a terminal with ASCII characters only.
+            /// Character that fills the region in a terminal that is limited to ASCII characters.
             fn letter(self) -> char {
                 match self { $(Self::$kind => $letter),* }
             }

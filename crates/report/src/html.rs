@@ -105,7 +105,8 @@ fn anchor(names: &mut Names, text: &str) -> String {
 /// Length (bytes) above which a table cell gets a minimum width.
 const LONG: usize = 60;
 
-/// Largest number of columns of a table that stays a table on a narrow screen.
+/// Largest number of columns of a table that is still shown as a table on a narrow screen; if a table has more columns,
+/// each row becomes a card.
 const CARDS: usize = 2;
 
 pub(crate) struct Writer<'a> {

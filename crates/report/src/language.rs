@@ -248,8 +248,8 @@ impl Translator {
         best
     }
 
-    /// Returns translations of a text that differs from an entry only by its first letter, by
-    /// punctuation around it, or by being a list.
+    /// Returns translations of a text that has no entry as a whole: the text with its first letter in the other case,
+    /// the text without the punctuation around it, or the parts of a list.
     fn derived(&self, text: &str, depth: usize) -> Vec<Translated> {
         let mut found = Vec::new();
         let inner = text.trim();

@@ -18,7 +18,7 @@ const UPLOT_CSS: &str = include_str!("../assets/vendor/uPlot.min.css");
 const UPLOT_JS: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
 const UPLOT_LICENSE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
 
-/// three.js, reduced by `cargo xtask bundle` to the parts that the three-dimensional stage uses.
+/// three.js, reduced by `cargo xtask bundle` to the parts that the three-dimensional view of the player uses.
 const THREE_JS: &str = include_str!("../assets/vendor/three.iife.min.js");
 const THREE_LICENSE: &str = include_str!("../assets/vendor/three-LICENSE");
 
@@ -41,7 +41,7 @@ const PLAYER: [&str; 15] = [
     include_str!("../assets/player.js"),
 ];
 
-/// Scripts of the three-dimensional stage, for pages with a player.
+/// Scripts of the three-dimensional view, for pages with a player.
 const DEPTH: [&str; 3] = [
     include_str!("../assets/solids.js"),
     include_str!("../assets/orbit.js"),

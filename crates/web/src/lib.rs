@@ -1,4 +1,4 @@
-//! The engine of a page: handles a request and returns a document.
+//! A WebAssembly module, the engine of a page: handles a request and returns a document.
 //!
 //! A request consists of four bytes (the length of the following object, little-endian), a JSON
 //! object, and the bytes of the records, one after the other:
@@ -275,8 +275,7 @@ fn answered_in(
     }
 }
 
-/// Runs some of the variants in each plane; returns their results, and the trails of their barrels
-/// as bytes.
+/// Runs some of the variants in each plane; returns their results, and the paths of their barrels as bytes.
 fn some(
     planes: &[Plane],
     numbers: &[u32],

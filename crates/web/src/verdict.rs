@@ -70,7 +70,7 @@ fn given(planes: &[Plane], request: Request) -> Result<Vec<Vec<CaseResult>>, Str
     cases.into_iter().map(|plane| plane.into_iter().map(Case::result).collect()).collect()
 }
 
-/// Returns the results of all variants, with the trails of their barrels.
+/// Returns the results of all variants, with the paths of their barrels.
 pub(crate) fn results(
     planes: &[Plane],
     request: Request,

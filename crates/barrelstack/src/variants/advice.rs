@@ -176,8 +176,8 @@ impl Remedy {
         )
     }
 
-    /// Tabulates every change that was tried; `in_planes` selects the wording for planes instead of that for three
-    /// dimensions.
+    /// Tabulates every change that was tried. If `in_planes` is set, the wording is that for planar models, otherwise
+    /// that for three-dimensional models.
     pub fn table(&self, in_planes: bool) -> Table {
         let [stand, tried] =
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
@@ -241,7 +241,7 @@ fn falls(tried: &Tried) -> String {
     }
 }
 
-/// Describes the share of variants that stands, such as "63 of 64 variants".
+/// Describes how many variants stand, such as "63 of 64 variants".
 fn share(tried: &Tried) -> String {
     let Tried { variants, failed, .. } = tried;
     if *failed == 0 {

@@ -57,7 +57,8 @@ described! {
 }
 
 impl Unknown {
-    /// Returns the constant at its 5 % fractile, median and 95 % fractile, each with the share there.
+    /// Returns the constant at its 5 % fractile, median and 95 % fractile, each with the share of collapses at this
+    /// value.
     pub fn low_median_high(&self) -> Option<[&ShareAt; 3]> {
         Some([self.shares.first()?, self.shares.get(FRACTILES.len() / 2)?, self.shares.last()?])
     }
@@ -97,7 +98,7 @@ impl Unknown {
         }
     }
 
-    /// Returns a simple test that measures the constant; `None` if there is none.
+    /// Describes a simple test that measures the constant; `None` if there is none.
     pub fn test(&self) -> Option<&'static str> {
         match self.field {
             FRICTION_BARREL_RACK => Some(
@@ -307,9 +308,9 @@ pub struct Constant<'a> {
 /// Effect of the uncertain constants on the share of collapses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
-    /// Range that contains the share with a probability of 95 % as the uncertain constants vary.
+    /// Range that contains the share of collapses with a probability of 95 % as the uncertain constants vary.
     pub range: [f64; 2],
-    /// Share with all constants as stated.
+    /// Share of collapses if all uncertain constants are at their medians.
     pub as_stated: f64,
     /// The constants, the most influential first.
     pub decides: Vec<Unknown>,

@@ -298,7 +298,7 @@ pub fn strapped_together(scenario: &Scenario, pretension: f64) -> Option<Vec<Str
     Some(strapped(scenario, pretension)?.changes)
 }
 
-/// Returns the fields of a table that the scenario states, as TOML.
+/// Returns, as TOML, those fields of a table that the scenario states.
 fn given(scenario: &Scenario, table: &str) -> Vec<String> {
     let settings = scenario.settings();
     let own = settings.iter().filter(|one| one.source == Source::Given);
@@ -337,7 +337,7 @@ impl Change {
 
 /// The variants of a stack in every plane, to be run on all cores.
 struct InPlanes {
-    /// For each plane the nominal case, followed by its variants.
+    /// For each plane, the nominal case, followed by its variants.
     cases: Vec<Vec<Prepared>>,
     /// Number of finished runs.
     done: AtomicUsize,

@@ -15,8 +15,8 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Selects among results, the first of which is that of the nominal case. If no case both has a verdict and was
-    /// shaken, selects the nominal case.
+    /// Selects the runs to show from results, of which the first is that of the nominal case. Only a case that was
+    /// shaken and has a verdict can be selected; if there is no such case, the nominal case is selected.
     pub(super) fn of(results: &[CaseResult]) -> Self {
         let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
         let number = |at: Option<&usize>| at.and_then(|at| u32::try_from(*at).ok()).unwrap_or(0);

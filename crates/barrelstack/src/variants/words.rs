@@ -366,8 +366,8 @@ fn tenths(value: f64) -> f64 {
     (10.0 * value).round() / 10.0
 }
 
-/// Formats a share in whole percent; a share near 0 or 100 % has as many decimals as its distance from 0 or 100 % needs
-/// for one significant digit: "0.3 %", "99.7 %".
+/// Formats a share in whole percent. Near 0 or 100 %, decimals are added until the distance from 0 or 100 % has one
+/// significant digit: "0.3 %", "99.7 %".
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rest = percent.min(100.0 - percent);

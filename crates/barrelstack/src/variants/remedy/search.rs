@@ -45,8 +45,8 @@ impl Plan {
         self.heights + self.straps
     }
 
-    /// Returns the confidence level of each interval, chosen so that all hold simultaneously at
-    /// [`LEVEL`].
+    /// Returns the confidence level of a single interval, chosen so that all intervals hold simultaneously with the
+    /// confidence [`LEVEL`].
     pub(super) fn level(&self) -> f64 {
         1.0 - (1.0 - LEVEL) / (self.changes() * self.planes).max(1) as f64
     }
@@ -58,10 +58,10 @@ impl Plan {
     }
 }
 
-/// Counts of a change that was tried.
+/// Counts of the variants of a change that was tried.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counts {
-    /// Number of counted variants, which are the first by number.
+    /// Number of counted variants; these are the variants with the lowest numbers.
     pub(super) ran: u32,
     /// Number of counted variants that failed, in the plane with the most failures.
     pub(super) failed: u32,
@@ -99,8 +99,8 @@ impl Counts {
         self.whole(plan) && !self.rejected(plan)
     }
 
-    /// Returns the interval of the share that fails in the worse plane; `None` unless all variants
-    /// were counted.
+    /// Returns the confidence interval of the share of variants that fail, in the plane in which more variants fail;
+    /// `None` unless all variants were counted.
     pub(super) fn interval(&self, plan: &Plan) -> Option<Interval> {
         self.whole(plan).then(|| clopper_pearson(self.failed, self.ran, plan.level()))
     }

@@ -7,14 +7,13 @@ use crate::variants::{ShareAt, Spread};
 /// little.
 const NARROW: f64 = 0.1;
 
-/// Minimum distance between the share of collapses at the median of a constant and the interval between the shares at
-/// its 5 % and 95 % fractiles. Only a share at the median that lies outside this interval by at least this distance is
-/// stated.
+/// The share of collapses at the median of a constant is stated only if it is less than both shares at the 5 % and 95 %
+/// fractiles, or greater than both, by at least this difference.
 const BEYOND: f64 = 0.1;
 
-/// Describes the range of the share as the uncertain constants vary, and the decisive constant, such as
-/// "Depending on the friction, stiffness and damping of the seats, which are uncertain, 31 to 100 % of such stacks
-/// fall in the direction along the barrels; the stiffness of seats decides the outcome: …".
+/// Describes the range of the share of collapses as the uncertain constants vary, and the decisive constant, such as
+/// "Depending on the friction, stiffness and damping of the seats, which are uncertain, 31 to 100 % of such stacks fall
+/// in the direction along the barrels; the stiffness of seats decides the outcome: …".
 pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
     let [low, high] = spread.range?;
     let place = view.map_or_else(String::new, |view| format!(" in the direction {}", view.words()));
@@ -44,8 +43,8 @@ pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
     ))
 }
 
-/// Describes the measurement that narrows the range of the share most; `None` if no measurement
-/// narrows it.
+/// Describes the measurement that would narrow the range of the share of collapses most; `None` if no measurement would
+/// narrow it.
 pub fn measure(spread: &Spread) -> Option<String> {
     let [low, high] = spread.range?;
     let (one, left) = spread.worth_measuring()?;
