@@ -111,9 +111,9 @@ pub trait Comparable: Sized {
 
 /// Makes all answers show the same variant under the same component of the motion.
 ///
-/// The variant is the medoid over all answers. For every answer that shows another variant, the
-/// medoid is run; the observer receives the progress and may cancel. Answers are returned unchanged
-/// if any of them has no variants.
+/// The variant is the most typical one over all answers (the medoid). In every answer that shows another variant, the
+/// medoid is run and then shown; the observer receives the progress and may cancel. Answers are returned unchanged if
+/// any of them has no variants.
 ///
 /// # Errors
 /// When the common variant cannot be run.

@@ -76,7 +76,7 @@ pub struct Fragment {
     pub data: String,
 }
 
-/// Writes blocks, translated from English to a language, as part of a page that needs scripts, such
+/// Translates blocks from English to a language, and writes them as part of a page that works only with scripts, such
 /// as a [`Shell`](crate::Shell).
 pub fn fragment(blocks: &[Block], language: Language) -> Fragment {
     let english = Document { blocks: blocks.to_vec(), ..Document::default() };

@@ -130,7 +130,7 @@ struct Translator {
 /// Maximum depth of nested phrases.
 const DEEPEST: usize = 8;
 
-/// Maximum number of matches between a text and one template that are compared.
+/// Maximum number of matches of a text with one template among which the best is searched for.
 const READINGS: usize = 24;
 
 impl Translator {

@@ -114,7 +114,7 @@ impl<'a> Flow<'a> {
         self.size[0] - 2.0 * MARGIN[0]
     }
 
-    /// Returns the lowest position of a line on a page.
+    /// Returns the distance (points) of the bottom margin from the top of a page.
     fn floor(&self) -> f64 {
         self.size[1] - MARGIN[2]
     }

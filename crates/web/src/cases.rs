@@ -1,5 +1,5 @@
-//! Results of variants, as the parallel workers of a page exchange them: bit-exact, and reduced to the data that a
-//! verdict needs.
+//! Results of variants, in the form in which the parallel engines of a page exchange them: bit-exact, and reduced to
+//! the data that a verdict needs.
 
 use barrelstack::ensemble::CaseResult;
 use barrelstack::outcome::{CollapseMode, Outcome};

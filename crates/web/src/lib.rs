@@ -125,7 +125,7 @@ pub struct Request {
     /// Results of the variants `numbers`, in each plane.
     #[serde(default)]
     pub cases: Vec<Vec<Case>>,
-    /// Length in bytes of the trails of the barrels, which follow the records.
+    /// Length in bytes of the paths of the barrels (the trails), which follow the records.
     #[serde(default)]
     pub trails: usize,
     /// Information that the record files lack.

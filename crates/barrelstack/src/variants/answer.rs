@@ -97,7 +97,8 @@ impl Answer {
     }
 }
 
-/// Returns the number of the medoid variant over all answers and planes; `None` if an answer has no variants.
+/// Returns the number of the variant that is the most typical one over all answers and planes (the medoid); `None` if
+/// an answer has no variants.
 ///
 /// Only variants that have the same component of the motion in all answers are eligible.
 pub(crate) fn common_number<A: Comparable>(answers: &[&A]) -> Result<Option<u32>, GroundError> {
@@ -157,7 +158,7 @@ pub fn answer(
     answered(scenario, choice, None, observer)
 }
 
-/// Builds an [`answer`] that shows the medoid, from results of variants that were run elsewhere.
+/// Builds an [`answer`] that shows the most typical run, from results of variants that were run elsewhere.
 ///
 /// `results` has, for each plane, the results of the nominal case and of all variants by number, as
 /// [`run_some`](super::run_some) returns them.

@@ -150,7 +150,7 @@ impl Plane {
         number > self.count().div_ceil(2)
     }
 
-    /// Returns a caveat about the motion of this plane.
+    /// Returns a warning if the planes share a record that has only one horizontal component.
     fn warning(&self, planes: usize) -> Option<String> {
         let recorded = matches!(self.scenario.motion.source, MotionSource::Record(_));
         (planes > 1 && recorded && self.exchanged.is_none()).then(|| {
