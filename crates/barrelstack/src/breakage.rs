@@ -34,17 +34,17 @@ impl Breakage {
 }
 
 /// Volume of wine in a bottle (m³).
+///
+/// A barrel of 225 L fills 300 bottles, that is, 25 cases (The Californian 2014).
 const BOTTLE: f64 = 0.75e-3;
 
-/// Assumed lower and upper price (US$) for which the cellar could have sold a bottle of wine.
-///
-/// A barrel of 225 L holds 25 cases of wine (The Californian 2014).
+/// Assumed lower and upper bound (US$) of the price at which the cellar could have sold a bottle of wine.
 const BOTTLE_COST: [f64; 2] = [4.0, 20.0];
 
-/// Assumed lower and upper cost (US$) of a burst barrel of any size, without its wine.
+/// Assumed lower and upper bound (US$) of the cost of a burst barrel of any size, without its wine.
 const BARREL_COST: [f64; 2] = [400.0, 1200.0];
 
-/// Returns the lower and upper cost (US$) of a number of burst barrels and of their wine, whose volume is
+/// Returns the lower and upper bound (US$) of the cost of a number of burst barrels and of their wine, whose volume is
 /// `wine` (m³).
 pub fn cost(barrels: f64, wine: f64) -> [f64; 2] {
     [0, 1].map(|end| wine / BOTTLE * BOTTLE_COST[end] + barrels * BARREL_COST[end])

@@ -101,8 +101,8 @@ pub trait Comparable: Sized {
         observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
     ) -> Result<Self, RunFailure>;
 
-    /// Returns the largest share of variants that collapse in any plane (0 or 1 for a single run), and this plane. The
-    /// plane is `None` for a three-dimensional model and for a free scene.
+    /// Returns the share of variants that collapse (0 or 1 for a single run) in the plane in which this share is
+    /// largest, and this plane. The plane is `None` for a three-dimensional model and for a free scene.
     fn worst(&self) -> (f64, Option<View>);
 
     /// Returns these results as one side of a comparison, shown in the given plane if the scenario has it.
@@ -111,9 +111,9 @@ pub trait Comparable: Sized {
 
 /// Makes all answers show the same variant under the same component of the motion.
 ///
-/// The variant is the medoid over all answers. For every answer that shows another variant, the
-/// medoid is run; the observer receives the progress and may cancel. Answers are returned unchanged
-/// if any of them has no variants.
+/// The variant is the most typical one over all answers (the medoid). In every answer that shows another variant, the
+/// medoid is run and then shown; the observer receives the progress and may cancel. Answers are returned unchanged if
+/// any of them has no variants.
 ///
 /// # Errors
 /// When the common variant cannot be run.
@@ -132,10 +132,10 @@ pub fn aligned<A: Comparable>(
     answers.into_iter().map(align).collect()
 }
 
-/// Returns the runs of the answers with their names.
+/// Converts each answer, given with its name, to one side of a comparison.
 ///
-/// If all answers have both planes, every run is shown in the same plane: the governing plane of the answer with the
-/// largest share of collapses.
+/// If all answers have both planes, every side shows the same plane: the governing plane of the answer with the largest
+/// share of collapses.
 pub fn sides<A: Comparable>(answers: Vec<(String, A)>) -> Vec<Side> {
     let all = answers.iter().map(|(_, answer)| answer.worst());
     let worst = all.reduce(|worst, one| if one.0 > worst.0 { one } else { worst });
@@ -201,7 +201,7 @@ pub fn share_of(ensemble: Option<&Spread>, outcome: &Outcome) -> f64 {
 }
 
 impl Side {
-    /// Returns a single run in a plane, without variants and without another plane.
+    /// Creates one side of a comparison from a single run in a plane, without variants and without another plane.
     pub fn of_run(name: String, run: &Run, summary: Summary) -> Self {
         let assembly = &run.assembly;
         let recorded = |values: Vec<f64>| [run.recording.times.clone(), values];
@@ -278,9 +278,9 @@ pub enum CompareError {
     /// Two runs have equal inputs.
     #[error("{first} and {second} are the same run: all their inputs are equal")]
     Identical {
-        /// The first of the two.
+        /// Name of the first of the two runs.
         first: String,
-        /// The second of the two.
+        /// Name of the second of the two runs.
         second: String,
     },
 }

@@ -33,8 +33,8 @@ const FILES_OF_PLANE: [&str; 5] =
 /// Maximum size (bytes) of a summary that is read.
 const SUMMARY_LIMIT: usize = 256 << 20;
 
-/// Maximum time that a run takes to write its files. A file that was modified later was changed by
-/// another program.
+/// Maximum time between the modification of the summary of a run and that of its other files. A file that was modified
+/// later was changed by another program.
 const AT_ONCE: Duration = Duration::from_secs(10);
 
 /// Error while writing output files.
@@ -247,8 +247,7 @@ impl Folder {
         written.map_err(|(path, error)| ExportError::refused(&path, &error))
     }
 
-    /// Rewrites the report with an embedded page that contains the program and starts with this
-    /// scenario.
+    /// Rewrites the report so that it embeds `page`, which contains the program and starts with the scenario.
     ///
     /// # Errors
     /// When a file cannot be written.

@@ -9,17 +9,16 @@ use crate::run::Run;
 /// Rigid block equivalent to a stack whose parts do not move relative to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidBlock {
-    /// Distance (m) from the edge about which the block rocks to its center of mass.
+    /// Distance (m) between the center of mass and the edge about which the block rocks.
     pub radius: f64,
-    /// Angle (rad) at rest between the vertical and the line from the edge about which the block rocks to its center of
-    /// mass; the block overturns if it tilts by more than this angle.
+    /// Angle (rad) at rest between the vertical and the line that joins the center of mass and the edge about which the
+    /// block rocks; the block overturns if it tilts by more than this angle.
     pub slenderness: f64,
     /// Frequency parameter `p` (1/s): `p² = m g R / I`, with `I` about the edge.
     pub frequency: f64,
 }
 
-/// Height up to which a point belongs to the foot, measured from the lowest point, as a share of
-/// the total height.
+/// Points up to this height above the lowest point, as a fraction of the total height, belong to the foot.
 const FOOT: f64 = 1e-3;
 
 impl RigidBlock {

@@ -60,14 +60,14 @@ pub fn answer_document(answer: &Answer) -> Document {
     page(&decides.run, &decides.summary, variants)
 }
 
-/// Returns the stage of an answer: the moving picture of the run, in each of its planes.
+/// Returns the moving picture of the run that an answer shows, in each of its planes.
 pub fn stage(answer: &Answer) -> Block {
     let Answer { decides: Shown { run, summary, variants, .. }, other, .. } = answer;
     let scene = drawing::scene_among(run, variants.as_ref());
     sections::stage(run, summary, other.as_ref(), &scene)
 }
 
-/// Returns the stage before any motion: the stack as assembled, in each of its planes.
+/// Returns the picture that a page shows before any motion: the stack as assembled, in each of its planes.
 ///
 /// # Errors
 /// When the stack cannot be assembled.

@@ -87,8 +87,8 @@ pub fn stability(scenario: &Scenario) -> Result<Stability, RunFailure> {
     })
 }
 
-/// Returns the longest period (s) of sway of the stack of a scenario while nothing slips; `None` if
-/// the stack does not withstand a sideways push of 1/10000 of its weight.
+/// Returns the longest sway period (s) of a stack while nothing slips; `None` if the stack does not withstand a
+/// sideways push of 1/10000 of its weight.
 ///
 /// # Errors
 /// As [`stability`].
@@ -139,11 +139,10 @@ impl StabilityTable {
     }
 }
 
-/// Returns the longest period (s) of sway by Rayleigh's quotient; `None` if the pushed stack does
-/// not come to rest.
+/// Returns the longest period (s) of sway by Rayleigh's quotient; `None` if the pushed stack does not come to rest.
 ///
-/// The shape of the motion is the displacement due to a sideways push; the quotient is the work of
-/// the push divided by the kinetic energy of that shape.
+/// The shape of the motion is the displacement due to a sideways push. The quotient is the work of the push divided by
+/// the sum of mass times squared displacement (and moment of inertia times squared rotation) over all bodies.
 fn period_of(standing: &Standing) -> Option<f64> {
     let model = &standing.assembly.model;
     let pull = -model.gravity().z * math::sin_cos(NUDGE).0;

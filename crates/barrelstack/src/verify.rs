@@ -223,7 +223,8 @@ fn finer_step<R: Repeatable>(base: &R) -> (String, Scenario) {
 /// Returns the scenario with nodes at half the spacing, or the reason why halving the spacing would
 /// change the stack.
 fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
-    const PER_NODE: &str = "constants are per node, so the number of nodes is part of the physics";
+    const PER_NODE: &str =
+        "contact constants are stated per node, so more nodes would make the contacts stiffer";
     const IN_SPACE: &str = "bodies of a three-dimensional model have no contact nodes";
     let mut finer = scenario.clone();
     match &mut finer.scene {
@@ -240,7 +241,7 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
             let per_seat = seats.iter().all(|interface| interface.basis == Basis::Seat);
             if stack.view == View::Transverse && !per_seat {
                 return Err(
-                    "across the barrels, each single node (cradle supports, corners of beams, rolling barrels) represents one spacing, so halving the spacing would make these contacts softer"
+                    "across the barrels, each single node (cradle supports, corners of beams, rolling barrels) represents one node spacing of the boundary, so halving the spacing would make these contacts softer"
                         .into(),
                 );
             }

@@ -183,8 +183,8 @@ impl Picture {
     }
 }
 
-/// Returns the smallest rectangle that contains all changes; `None` if there are no changes, or if
-/// the sizes differ.
+/// Returns the smallest rectangle that contains all changes from one picture to the next; `None` if there are no
+/// changes, or if the pictures differ in size.
 fn change(before: &[u8], now: &[u8], wide: usize) -> Option<Picture> {
     if before.len() != now.len() {
         return None;

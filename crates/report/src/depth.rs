@@ -8,10 +8,11 @@ use crate::{
     player_data::events,
 };
 
-/// Quantum (m) of the points at which forces act: two millimeters, which is too little to be visible.
+/// Quantum (m) to which the points of action of forces are rounded: two millimeters, which is too little to be visible.
 const POINT_QUANTUM: f64 = 1.0 / 512.0;
 
-/// Ratio of the quantum of forces to that of [`pack::quantum_for`], which is at most 2⁻¹⁶ of the largest component.
+/// Forces are rounded to multiples of a quantum, which is this number times the power of two that [`pack::quantum_for`]
+/// returns (at most 2⁻¹⁶ of the largest component).
 const FORCE_STEPS: f64 = 64.0;
 
 /// A point or vector `[x, y, z]` (m): x across the barrels, y along them, z up; right-handed.
@@ -103,9 +104,11 @@ pub struct DepthBody {
 /// Poses of the bodies of a scene in three dimensions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DepthPoses {
-    /// Poses of the planar scene, placed in the plane of x and z; its bodies have the same indices.
+    /// Poses of the planar scene, placed in the plane of x and z. The bodies have the same indices as in the planar
+    /// scene.
     Across,
-    /// Poses of the planar scene, placed in the plane of y and z; its bodies have the same indices.
+    /// Poses of the planar scene, placed in the plane of y and z. The bodies have the same indices as in the planar
+    /// scene.
     Along,
     /// For each frame of the planar scene, the pose of each body.
     Free(Vec<Vec<Pose3>>),
@@ -138,11 +141,12 @@ pub struct Depth {
     /// With [`DepthPoses::Free`]: for each [`Trace`](crate::Trace) of the planar scene, the index of the body whose
     /// center it follows.
     pub paths: Vec<usize>,
-    /// With [`DepthPoses::Free`]: for each frame, contact forces, each as its point (m) and its components (N). A force
-    /// of zero is not drawn. The packed data are smallest if a contact keeps its place in the list.
+    /// With [`DepthPoses::Free`]: for each frame, the contact forces, each as its point (m) and its components (N). A
+    /// force of zero is not drawn. The packed data are smallest if a contact has the same position in the list of every
+    /// frame.
     pub forces: Vec<Vec<[Point3; 2]>>,
-    /// For each pane of the player, the indices of the axes that point right and up in it; the panes show the forces in
-    /// these axes.
+    /// For each pane of the player, the indices of the axes that point right and up in it; the pane shows the
+    /// components of forces along these axes.
     pub panes: Vec<[usize; 2]>,
 }
 
@@ -195,7 +199,8 @@ impl Depth {
         })
     }
 
-    /// Packs forces as six lists of channels, one channel for each place in the longest list; missing forces are gaps.
+    /// Packs forces as six lists of channels: for the three coordinates of the point and the three components of the
+    /// force. Each list has one channel for every position in the longest list of forces; missing forces are gaps.
     fn packed_forces(&self, count: usize) -> Value {
         let frames = &self.forces[..self.forces.len().min(count)];
         let slots = frames.iter().map(Vec::len).max().unwrap_or(0);

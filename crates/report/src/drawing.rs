@@ -13,7 +13,7 @@ pub(crate) struct Drawing {
 /// Separate polylines.
 pub(crate) type Runs = Vec<Vec<[f64; 2]>>;
 
-/// One item of a drawing. A class is a list of class names of the style sheet.
+/// One item of a drawing. The field `class` holds one or more class names of the style sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Item {
     Line {

@@ -118,8 +118,8 @@ impl Figure {
         self.draw_in(id, Room::Page)
     }
 
-    /// Draws the picture for an available width; a strip is the same for all widths, because its
-    /// panels wrap.
+    /// Draws the picture for an available width; a strip is drawn the same for all widths, because the page wraps its
+    /// panels.
     pub(crate) fn draw_in(&self, id: &str, room: Room) -> Drawing {
         match &self.kind {
             FigureKind::Plot(plot) => plot.draw(id, &self.caption, room),

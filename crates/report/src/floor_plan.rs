@@ -1,4 +1,4 @@
-//! A floor plan: labeled regions viewed from above, and the share of each cell as a shade.
+//! A floor plan: labeled regions viewed from above, over a grid of cells that are shaded by a share from 0 to 1.
 
 use std::fmt::Write as _;
 
@@ -15,7 +15,7 @@ pub struct FloorPlan {
     pub size: [f64; 2],
     /// Regions, drawn in this order.
     pub regions: Vec<Region>,
-    /// Shares of the cells of the floor, drawn as shades under the regions.
+    /// A share for each cell of the floor, drawn as a shade under the regions.
     pub heat: Option<Heat>,
     /// Points with their names.
     pub marks: Vec<(Point, String)>,
@@ -32,7 +32,7 @@ pub struct Region {
     pub label: String,
 }
 
-/// A share for each square cell of a floor.
+/// A share for each square cell of a floor, such as the share of runs in which an object covers the cell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heat {
     /// Side (m) of a cell; the first cell is at the origin.
@@ -41,7 +41,7 @@ pub struct Heat {
     pub columns: usize,
     /// Shares from 0 to 1, row by row.
     pub shares: Vec<f64>,
-    /// Meaning of a share, for the legend.
+    /// Name of the shaded quantity in the legend.
     pub label: String,
 }
 
@@ -60,7 +60,7 @@ macro_rules! kinds {
                 match self { $(Self::$kind => concat!("plan ", $class)),* }
             }
 
-            /// Character that fills the region in a terminal with ASCII characters only.
+            /// Character that fills the region in a terminal that is limited to ASCII characters.
             fn letter(self) -> char {
                 match self { $(Self::$kind => $letter),* }
             }

@@ -8,8 +8,7 @@ pub(crate) const TITLE: &str = "Words";
 /// The terms of a page, with a record of the terms that occur on the page.
 pub(crate) struct Glossary {
     words: Vec<Word>,
-    /// For each term: `true` if the term was marked since the last heading, and `true` if it was
-    /// marked anywhere.
+    /// Two flags for each term: whether the term was marked since the last heading, and whether it was marked anywhere.
     marked: Vec<[bool; 2]>,
 }
 
@@ -90,8 +89,8 @@ pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
     words.iter().filter(|one| find(text, one.word).is_some()).collect()
 }
 
-/// Maximum length (bytes) of a word ending with its punctuation that is kept on the same line as the marked term before
-/// it.
+/// The characters between a marked term and the next blank, such as an ending with punctuation, are kept on the same
+/// line as the term if they have at most this many bytes.
 const MOST_JOINED: usize = 4;
 
 /// Finds the first occurrence of `word` or its plural, as a whole word, in `text`; the parts of a key such as

@@ -76,7 +76,7 @@ pub struct Fragment {
     pub data: String,
 }
 
-/// Writes blocks, translated from English to a language, as part of a page that needs scripts, such
+/// Translates blocks from English to a language, and writes them as part of a page that works only with scripts, such
 /// as a [`Shell`](crate::Shell).
 pub fn fragment(blocks: &[Block], language: Language) -> Fragment {
     let english = Document { blocks: blocks.to_vec(), ..Document::default() };
@@ -105,7 +105,8 @@ fn anchor(names: &mut Names, text: &str) -> String {
 /// Length (bytes) above which a table cell gets a minimum width.
 const LONG: usize = 60;
 
-/// Largest number of columns of a table that stays a table on a narrow screen.
+/// Largest number of columns of a table that is still shown as a table on a narrow screen; if a table has more columns,
+/// each row becomes a card.
 const CARDS: usize = 2;
 
 pub(crate) struct Writer<'a> {

@@ -130,7 +130,7 @@ struct Translator {
 /// Maximum depth of nested phrases.
 const DEEPEST: usize = 8;
 
-/// Maximum number of matches between a text and one template that are compared.
+/// Maximum number of matches of a text with one template among which the best is searched for.
 const READINGS: usize = 24;
 
 impl Translator {
@@ -248,8 +248,8 @@ impl Translator {
         best
     }
 
-    /// Returns translations of a text that differs from an entry only by its first letter, by
-    /// punctuation around it, or by being a list.
+    /// Returns translations of a text that has no entry as a whole: the text with its first letter in the other case,
+    /// the text without the punctuation around it, or the parts of a list.
     fn derived(&self, text: &str, depth: usize) -> Vec<Translated> {
         let mut found = Vec::new();
         let inner = text.trim();

@@ -33,7 +33,7 @@
 //!
 //! Scenes use meters, radians and seconds, with x to the right, z up and angles counterclockwise.
 //! Plots, tables and histories take numbers in the unit that their label states. A number that is
-//! not finite is a gap in a line and a dash in a table. No input panics: lists of unequal length
+//! not finite is a gap in a line and a dash in a table. No input causes a panic: lists of unequal length
 //! are read to the end of the shorter list, and empty figures are drawn as empty axes.
 
 mod animation;

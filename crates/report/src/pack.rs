@@ -1,10 +1,9 @@
-//! Packed numbers for the page: quantized, differenced, and written as variable-length integers in
-//! base64.
+//! Packed numbers for the page: quantized, differenced, and written as variable-length integers in base64.
 //!
-//! A value is rounded to a whole multiple of a quantum. The quantum is a power of two, so the
-//! product that the decoder computes is exact, and page and program agree to the bit.
-//! The stream contains one LEB128 integer per value: 1 plus the zigzag code of the first or second difference from
-//! the previous values. A run of missing values is 0, followed by the number of values after the first one.
+//! A value is rounded to a whole multiple of a quantum. The quantum is a power of two, so the product that the decoder
+//! computes is exact, and page and program agree to the bit. The stream contains one LEB128 integer per value: 1 plus
+//! the zigzag code of the first or second difference from the previous values. A sequence of `n` missing values is
+//! encoded as two integers, 0 and `n - 1`.
 
 use std::io::Write as _;
 

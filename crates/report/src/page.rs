@@ -18,7 +18,7 @@ const UPLOT_CSS: &str = include_str!("../assets/vendor/uPlot.min.css");
 const UPLOT_JS: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
 const UPLOT_LICENSE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
 
-/// three.js, reduced by `cargo xtask bundle` to the parts that the three-dimensional stage uses.
+/// three.js, reduced by `cargo xtask bundle` to the parts that the three-dimensional view of the player uses.
 const THREE_JS: &str = include_str!("../assets/vendor/three.iife.min.js");
 const THREE_LICENSE: &str = include_str!("../assets/vendor/three-LICENSE");
 
@@ -41,7 +41,7 @@ const PLAYER: [&str; 15] = [
     include_str!("../assets/player.js"),
 ];
 
-/// Scripts of the three-dimensional stage, for pages with a player.
+/// Scripts of the three-dimensional view, for pages with a player.
 const DEPTH: [&str; 3] = [
     include_str!("../assets/solids.js"),
     include_str!("../assets/orbit.js"),
@@ -297,7 +297,7 @@ impl Shell<'_> {
     }
 }
 
-/// Writes the translations of the texts of scripts into the page; nothing for English.
+/// Writes into the page the translations of the texts that its scripts use; writes nothing for English.
 fn hold_entries(out: &mut String, language: Language, scripts: &[&str]) {
     let entries = language.entries(scripts);
     if !entries.is_empty() {

@@ -41,11 +41,10 @@ impl Paper {
 
 /// Writes the document as a PDF, with the same text and numbers as [`html`](crate::html).
 ///
-/// Figures are vector graphics and text is selectable. The PDF has an outline of sections, the
-/// title and page number in every footer, and tags for screen readers. A player at the start of the
-/// document is represented on the first page by a picture taken during the falls. Content that is
-/// collapsed on the HTML page is in an appendix; a sentence takes the place of
-/// [`Block::OnScreen`].
+/// Figures are vector graphics and text is selectable. The PDF has an outline of sections, the title and page number in
+/// every footer, and tags for screen readers. If the document starts with a player in which bodies fall, the first page
+/// shows a picture at the time of a fall. Content that is collapsed on the HTML page is in an appendix; a sentence
+/// takes the place of [`Block::OnScreen`].
 pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     let mut flow = Flow::new(document, paper);
     flow.verdict();
@@ -83,7 +82,7 @@ struct Flow<'a> {
     document: &'a Document,
     size: [f64; 2],
     pages: Vec<Page>,
-    /// Distance (points) of the next block from the top of the last page.
+    /// Distance (points) of the next block from the top of the current page, which is the last.
     y: f64,
     names: Names,
     counter: Counter,
@@ -115,7 +114,7 @@ impl<'a> Flow<'a> {
         self.size[0] - 2.0 * MARGIN[0]
     }
 
-    /// Returns the lowest position of a line on a page.
+    /// Returns the distance (points) of the bottom margin from the top of a page.
     fn floor(&self) -> f64 {
         self.size[1] - MARGIN[2]
     }
@@ -373,8 +372,8 @@ impl<'a> Flow<'a> {
         least.min(0.8 * (self.floor() - MARGIN[1]))
     }
 
-    /// Returns the drawing of a figure, its height on the page, and its scale, which is as large as
-    /// the page and the largest height of a plot allow but at most 1.
+    /// Returns the drawing of a figure, its height on the page, and its scale, which is as large as the page and the
+    /// largest height of a plot allow, but at most 1.
     fn picture(&self, figure: &Figure, id: &str) -> (Drawing, f64, f64) {
         let drawing = figure.draw(id);
         let page = self.floor() - MARGIN[1] - 60.0;
@@ -402,8 +401,8 @@ impl<'a> Flow<'a> {
         self.y += GAP;
     }
 
-    /// Returns the picture of a player; if the player comes first in the document and anything
-    /// falls, the picture shows an instant during the falls.
+    /// Returns the picture of a player. If the player comes first in the document and bodies fall, the picture shows
+    /// the second fall, or the only one.
     fn still(&self, player: &Player) -> Figure {
         let mut falls = player.scene.events.iter().filter(|event| event.kind == EventKind::Fall);
         // At the time of the second fall, the first fall is visible, too.

@@ -12,7 +12,7 @@ use crate::{
 /// A drawing target, such as pixels or the content of a page. Coordinates are in px from the upper
 /// left corner, with y downward.
 pub(crate) trait Painter {
-    /// Draws polylines; the lengths of the style are already scaled.
+    /// Draws polylines; the lengths in `style`, such as the line width, are already scaled.
     fn lines(&mut self, runs: &[Vec<[f64; 2]>], closed: bool, style: &Style);
     /// Draws a circle.
     fn circle(&mut self, center: [f64; 2], radius: f64, style: &Style);

@@ -347,7 +347,7 @@ impl Painter for Writer<'_> {
     }
 
     fn circle(&mut self, [x, y]: [f64; 2], radius: f64, style: &Style) {
-        /// Distance of the control points of the cubic that approximates a quarter circle, as a
+        /// Distance of each control point from the nearer end of the cubic that approximates a quarter circle, as a
         /// share of the radius.
         const HANDLE: f64 = 0.552_284_75;
         self.draw(style, &|writer| {

@@ -38,7 +38,7 @@ pub struct Players {
     pub caption: String,
     /// The scenes, in reading order.
     pub panes: Vec<Pane>,
-    /// Histories shown in the strip below the stages, in place of the histories of the scenes.
+    /// Histories shown in the strip below the pictures, in place of the histories of the scenes.
     pub ground: Vec<History>,
     /// Label of a switch that draws the bodies of the first scene over all other scenes; `None` if
     /// there is no such switch.

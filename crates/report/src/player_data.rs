@@ -40,8 +40,8 @@ fn together<'a>(
     })
 }
 
-/// Returns the index of the pane that a player shows first: the first pane in which something falls
-/// or, if nothing falls, the first pane with a moment.
+/// Returns the index of the pane that a player shows first: the pane with the earliest [`Moment`] at which something
+/// falls or, if nothing falls, the pane with the earliest [`Moment`].
 fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
     let moments = scenes.into_iter().map(|scene| scene.moment.as_ref()).enumerate();
     let known = moments
@@ -187,14 +187,15 @@ fn history(history: &History) -> Value {
     })
 }
 
-/// Quantum of ghosts (m, rad): four millimeters, which is too little to be visible.
+/// Quantum to which lengths (m) and angles (rad) of ghosts are rounded: about 4 mm and 4 mrad, which is too little to
+/// be visible.
 const GHOST_QUANTUM: f64 = 1.0 / 256.0;
 
 /// Maximum distance (m) of the drawn line of a ghost from the true path.
 const GHOST_TOLERANCE: f64 = 0.01;
 
-/// Packs paths as two channels separated by gaps, and final poses as three channels and a list of
-/// bodies.
+/// Packs ghosts. The paths become two channels, x and z, with a gap after every path. The final poses become three
+/// channels and a list of bodies.
 fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     let mut line: Vec<Point> = Vec::new();
     for path in &ghosts.paths {
@@ -216,8 +217,7 @@ fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     })
 }
 
-/// Quantile of the positive values at which the color scale ends; the values of impacts far exceed
-/// all others.
+/// The color scale ends at this quantile of the positive values, because the values of impacts far exceed all others.
 const TINT_ENDS: f64 = 0.99;
 
 /// Packs a tint in steps of at most 1/64 of its color scale; values beyond the end of the scale are
@@ -244,7 +244,8 @@ fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
     json!({ "label": tint.label, "unit": tint.unit, "v": pack::channels(&channels, count, quantum) })
 }
 
-/// Packs forces as four channels for each position in the longest list; missing forces are gaps.
+/// Packs forces as four lists of channels: for x and z of the point and of the force. Each list has one channel for
+/// every position in the longest list of forces; missing forces are gaps.
 fn forces(frames: &[Vec<ContactForce>], count: usize) -> Value {
     let frames = &frames[..frames.len().min(count)];
     let slots = frames.iter().map(Vec::len).max().unwrap_or(0);

@@ -15,7 +15,7 @@ const OPEN_EVENTS: usize = 4;
 /// shown there; the remaining sentences follow below the player.
 const PANE_VERDICT: usize = 120;
 
-/// Markup of the controls, with a placeholder for the stages.
+/// Markup of the controls, with a placeholder for the drawings of the scenes.
 const CONTROLS: &str = include_str!("../assets/player.html");
 
 /// Markup of the container for the drawing of one scene.

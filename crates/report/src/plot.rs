@@ -189,8 +189,8 @@ impl Plot {
         Self { x, y, series, marks, interactive: true, ..Self::default() }
     }
 
-    /// `true` if the page can draw the plot interactively: interactivity was requested, x never
-    /// decreases, and there are no names or ranges.
+    /// `true` if the page can draw the plot interactively: interactivity was requested, x never decreases, and the plot
+    /// has neither category names nor ranges.
     pub(crate) fn is_live(&self) -> bool {
         self.interactive
             && self.y.names.is_empty()

@@ -166,8 +166,8 @@ impl Plot {
         Item::Circle { class: format!("dot s{}", self.look(at)), center, radius }
     }
 
-    /// Lays out the legend: position and lines of each entry, and the total height. If an entry
-    /// does not fit beside the axis, all entries start at `edge`.
+    /// Lays out the legend: position and lines of each entry, and the total height. Entries start at `left` or, if the
+    /// longest entry does not fit between `left` and `right`, at `edge`.
     fn legend_layout(&self, edge: f64, left: f64, right: f64) -> (Vec<LegendEntry>, f64) {
         let named = || self.series.iter().filter(|series| !series.label.is_empty());
         let wide = |label: &str| SAMPLE + 6.0 + text_width(label, FONT);

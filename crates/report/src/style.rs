@@ -43,7 +43,7 @@ pub(crate) const STYLE: &str = include_str!("../assets/figure.css");
 /// Additional style rules for printed documents.
 const PAPER: &str = include_str!("../assets/paper.css");
 
-/// Returns the style of a standalone figure: the style sheet with the colors of white paper.
+/// Returns the style of a standalone figure: the style sheet with the colors for white paper.
 pub(crate) fn standalone_style() -> String {
     on_white(STYLE)
 }

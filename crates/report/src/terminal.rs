@@ -8,7 +8,7 @@ use crate::{
 /// Character set of a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Characters {
-    /// Braille cells, and blocks of eight heights.
+    /// Braille patterns for pictures, and blocks of eight heights for histories.
     #[default]
     Unicode,
     /// ASCII characters only.

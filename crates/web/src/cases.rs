@@ -1,5 +1,5 @@
-//! Results of variants in the form in which engines exchange them: bit-exact, and reduced to the
-//! data that a verdict needs.
+//! Results of variants, in the form in which the parallel engines of a page exchange them: bit-exact, and reduced to
+//! the data that a verdict needs.
 
 use barrelstack::ensemble::CaseResult;
 use barrelstack::outcome::{CollapseMode, Outcome};
@@ -68,8 +68,8 @@ impl Case {
         }
     }
 
-    /// Converts the case back to a result with the data that a verdict needs; the trail is
-    /// transferred separately.
+    /// Converts the case back to a result with the data that a verdict needs, without the paths of the barrels, which
+    /// are transferred separately.
     pub(crate) fn result(self) -> Result<CaseResult, String> {
         let outcome = match self.outcome {
             Ended::Stable => Ok(Outcome::Stable),

@@ -1,4 +1,4 @@
-//! The engine of a page: handles a request and returns a document.
+//! A WebAssembly module, the engine of a page: handles a request and returns a document.
 //!
 //! A request consists of four bytes (the length of the following object, little-endian), a JSON
 //! object, and the bytes of the records, one after the other:
@@ -125,7 +125,7 @@ pub struct Request {
     /// Results of the variants `numbers`, in each plane.
     #[serde(default)]
     pub cases: Vec<Vec<Case>>,
-    /// Length in bytes of the trails of the barrels, which follow the records.
+    /// Length in bytes of the paths of the barrels (the trails), which follow the records.
     #[serde(default)]
     pub trails: usize,
     /// Information that the record files lack.
@@ -275,8 +275,7 @@ fn answered_in(
     }
 }
 
-/// Runs some of the variants in each plane; returns their results, and the trails of their barrels
-/// as bytes.
+/// Runs some of the variants in each plane; returns their results, and the paths of their barrels as bytes.
 fn some(
     planes: &[Plane],
     numbers: &[u32],
@@ -358,7 +357,7 @@ fn read(bytes: &[u8]) -> Result<Opened<'_>, String> {
     let length = usize::try_from(u32::from_le_bytes(*length)).unwrap_or(usize::MAX);
     let (head, mut rest) = rest.split_at_checked(length).ok_or_else(|| cut("its head"))?;
     let request: Request = serde_json::from_slice(head)
-        .map_err(|error| format!("the head of the request: {error}"))?;
+        .map_err(|error| format!("cannot read the head of the request: {error}"))?;
     let mut records = BTreeMap::new();
     for (path, length) in &request.records {
         let (record, after) = rest.split_at_checked(*length).ok_or_else(|| cut(path))?;

@@ -1,4 +1,4 @@
-//! A resolved scenario before a run, and the catalog.
+//! A scenario with all defaults, as a page shows it before a run; and the catalog.
 
 use barrelstack::check::{Checked, check};
 use barrelstack::motion::GroundMotion;
@@ -38,7 +38,7 @@ impl Catalog {
     }
 }
 
-/// A resolved scenario before a run.
+/// A scenario with all defaults, as a page shows it before a run.
 #[derive(Serialize)]
 pub(crate) struct Looked {
     title: String,
@@ -55,8 +55,8 @@ pub(crate) struct Looked {
     /// Number of steps of one variant multiplied by the number of moving bodies, summed over all
     /// planes; used to estimate the computation time.
     work: f64,
-    /// End (s) of the opening, a first part of the run that is shown while the whole run is
-    /// computed; `None` if there is no ground motion.
+    /// End (s) of the first part of the run, which is shown while the whole run is computed; `None` if there is no
+    /// ground motion.
     opening: Option<f64>,
     stage: Fragment,
 }
@@ -88,10 +88,10 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
 /// Fraction of the peak acceleration above which ground motion counts as strong; the same as in the
 /// player of a report.
 const STRONG: f64 = 0.1;
-/// Duration (s) of the opening from the start of the strong ground motion.
+/// Duration (s) from the start of the strong ground motion to the end of the part of a run that a page shows first.
 const IN_PROGRESS: f64 = 3.0;
 
-/// Returns the time (s) at which the opening of a motion ends.
+/// Returns the end (s) of the first part of a run, which a page shows while it computes the whole run.
 fn opening(motion: &GroundMotion) -> f64 {
     let limit = STRONG * motion.pga();
     let mut time = 0.0;

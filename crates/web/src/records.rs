@@ -38,8 +38,8 @@ pub(crate) struct Motion {
     files: Vec<String>,
     /// Description of each channel.
     channels: Vec<String>,
-    /// Length in bytes of the combined file with all channels, in the data that follow; 0 if the
-    /// motion is one of the given files.
+    /// Length in bytes of the combined file of all channels, which follows the JSON; 0 if the motion is one of the
+    /// given files.
     length: usize,
 }
 
@@ -125,8 +125,8 @@ fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
 }
 
 impl Motion {
-    /// Combines the files of one record. If `described` is set, data of station files are included,
-    /// so that even a single file is rewritten.
+    /// Combines the files of one record. A single file is kept as it is, unless `described` is set; the record then
+    /// includes data of station files, so it is written to a new file.
     fn of(records: &[Record], described: bool) -> Result<(Self, Vec<u8>), String> {
         let files: Vec<String> = records.iter().map(|record| record.file.clone()).collect();
         let said = |record: &Record| -> Vec<String> {

@@ -1,13 +1,13 @@
-//! Trails of the barrels of variants, encoded so that engines can exchange them for a report.
+//! Paths of the barrels in variants (trails), encoded so that engines can exchange them for a report.
 
 use std::collections::BTreeMap;
 
 use barrelstack::ensemble::Trail;
 
-/// Trails, by the index of the plane and the number of the variant.
+/// Paths of barrels, by the index of the plane and the number of the variant.
 pub(crate) type Trails = BTreeMap<(u32, u32), Trail>;
 
-/// Encodes trails in little-endian form: numbers and lengths in four bytes, positions in single
+/// Encodes the paths of barrels in little-endian form: numbers and lengths in four bytes, positions in single
 /// precision.
 pub(crate) fn written<'a>(trails: impl IntoIterator<Item = ((u32, u32), &'a Trail)>) -> Vec<u8> {
     let mut out = Vec::new();
@@ -32,7 +32,7 @@ pub(crate) fn written<'a>(trails: impl IntoIterator<Item = ((u32, u32), &'a Trai
     out
 }
 
-/// Decodes trails; `None` if the bytes end too early.
+/// Decodes the paths of barrels; `None` if the bytes end too early.
 pub(crate) fn read(mut bytes: &[u8]) -> Option<Trails> {
     let mut all = Trails::new();
     while !bytes.is_empty() {

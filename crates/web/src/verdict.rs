@@ -70,7 +70,7 @@ fn given(planes: &[Plane], request: Request) -> Result<Vec<Vec<CaseResult>>, Str
     cases.into_iter().map(|plane| plane.into_iter().map(Case::result).collect()).collect()
 }
 
-/// Returns the results of all variants, with the trails of their barrels.
+/// Returns the results of all variants, with the paths of their barrels.
 pub(crate) fn results(
     planes: &[Plane],
     request: Request,
@@ -89,7 +89,7 @@ pub(crate) fn results(
     for (plane, results) in (0..).zip(&mut results) {
         for (number, result) in all.iter().zip(results) {
             let trail = trails.remove(&(plane, *number));
-            result.trail = trail.ok_or_else(|| format!("variant {number} has no trail"))?;
+            result.trail = trail.ok_or_else(|| format!("no barrel paths of variant {number}"))?;
         }
     }
     Ok(results)

@@ -192,7 +192,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
     let of = |(at, other): (usize, &Side)| {
         let second = letter(at + 1);
         let sentence = move |pair: &Paired| {
-            // Rounded to whole points; the addition turns −0 into 0.
+            // Rounded to whole percentage points; the addition turns −0 into 0.
             let points = |share: f64| (100.0 * share).round() + 0.0;
             let ([low, high], word) = match pair.reduction {
                 more if more < 0.0 => ([-pair.interval[1], -pair.interval[0]], "higher"),

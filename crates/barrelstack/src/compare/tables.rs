@@ -17,7 +17,7 @@ fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &
     table
 }
 
-/// Tabulates the inputs that differ between runs with these names.
+/// Tabulates the inputs that differ between runs; `names` are the names of the runs.
 pub fn inputs(names: &[String], differing: &[Difference]) -> Table {
     let mut table = Table::new("Inputs that differ. All other inputs are equal.", &[("input", "")]);
     table.columns.extend(names.iter().map(|name| Column::new(name, "")));

@@ -257,7 +257,8 @@ impl RenderFolder {
             Ok(files) => Ok(Rendered { part, place, files }),
             Err(error) => {
                 for file in self.earlier(part).unwrap_or_default() {
-                    // A file that cannot be removed is left; the error of the write says more.
+                    // A file that cannot be removed is left; the returned error, that of the write, is more
+                    // informative.
                     let _ = std::fs::remove_file(file);
                 }
                 if part != Part::Report {

@@ -192,7 +192,7 @@ impl Section<'_> {
         bars
     }
 
-    /// Returns the bands that draw a tie, one for each rail or barrel.
+    /// Returns the bands that represent a tie in three dimensions, one for each rail or barrel.
     fn bands(&self, tie: &Tie) -> Vec<DepthTie> {
         let band = |away: f64| DepthTie {
             bodies: tie.bodies,
@@ -318,7 +318,7 @@ mod tests {
     fn along(volumes: &[Volume], axis: usize) -> [f64; 2] {
         extent(volumes.iter().flat_map(|volume| match volume {
             Volume::Tube { ends: [a, b], radius } => {
-                // A tube has flat ends, so beyond the ends of its axis it extends only sideways.
+                // A tube has flat ends, so in the direction of its axis it does not extend beyond the ends of the axis.
                 let away: f64 = (0..3).map(|k| (b[k] - a[k]).powi(2)).sum::<f64>().sqrt();
                 let part = if away > 0.0 { (b[axis] - a[axis]) / away } else { 0.0 };
                 let reach = radius * (1.0 - part * part).max(0.0).sqrt();

@@ -162,8 +162,7 @@ fn furthest(run: &Run) -> Option<Moment> {
     Some(Moment { time, body, text, falls: false })
 }
 
-/// Returns the color scale of the contact stress, and the largest contact stress of every barrel
-/// over time.
+/// Returns the quantity by which barrels are colored: in each frame, the largest contact stress (kN/m) of every barrel.
 fn tint(run: &Run) -> Tint {
     let parts = &run.assembly.parts;
     let of = |(part, stress): (&Part, &f64)| {

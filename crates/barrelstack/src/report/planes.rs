@@ -50,7 +50,7 @@ pub(super) fn players(
     }
 }
 
-/// Returns the stage before any motion: the stack as assembled, in each plane.
+/// Returns the picture that a page shows before any motion: the stack as assembled, in each plane.
 pub(super) fn still(assemblies: &[Assembly]) -> Block {
     let caption = "The stack before the motion, to scale.".to_owned();
     if let [alone] = assemblies {

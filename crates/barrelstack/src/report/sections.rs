@@ -190,10 +190,11 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
     Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
-/// Returns the range of values to plot, which shows a stack while it stands and as it collapses.
+/// Returns the range of the values up to half a second after the collapse, with a margin. Returns `None` if there is no
+/// collapse; all values are then shown.
 ///
-/// Falling bodies leave the plot, as in the histories of Candia, de la Llera and Almazán (2008). Returns `None` if
-/// there is no collapse; all values are then shown.
+/// In a plot over this range, falling bodies leave the plot, as in the histories of Candia, de la Llera and Almazán
+/// (2008).
 pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     standing_until(run.fates.collapse_time()?, series)
 }

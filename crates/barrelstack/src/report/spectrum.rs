@@ -11,7 +11,7 @@ use crate::run::Run;
 /// Damping ratio of the response spectrum.
 const DAMPING: f64 = 0.05;
 
-/// Number of intervals of the plotted curve of the rigid block.
+/// Number of intervals into which the plotted curve of the rigid block is divided.
 const CURVE: u32 = 60;
 
 /// Measured rocking of a stack, and the rigid block equivalent to the stack.

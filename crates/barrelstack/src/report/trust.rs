@@ -4,7 +4,7 @@ use barrelstack_report::{Block, Cell, Table};
 
 use crate::verify::{Repeat, Verification};
 
-/// Builds the report section of a verification.
+/// Builds the report section on the reliability of a run, from a comparison of the run with its repeats.
 pub fn trust(found: &Verification) -> Vec<Block> {
     let mut blocks: Vec<Block> = found.sentences().into_iter().map(Block::Paragraph).collect();
     let table = Table::of(

@@ -6,9 +6,12 @@ use barrelstack_report::{Axis, Block, Cell, Figure, Plot, Series, Table, signifi
 use crate::variants::words::percent;
 use crate::variants::{Spread, Unknown};
 
-/// Returns a table of the uncertain constants for each plane, and a figure of the share of collapses as a function of
-/// the most influential constant. Planes without a known range are omitted. Each spread is given with the words for its
-/// plane, such as "along the barrels"; the words are empty for a three-dimensional model.
+/// Returns, for each plane, a table of the uncertain constants; and, for all planes, a figure of the share of collapses
+/// as a function of the most influential constant. Omits planes without a range of the share of collapses
+/// ([`Spread::range`]).
+///
+/// `planes` pairs the words for a plane, such as "along the barrels" (empty for a three-dimensional model), with the
+/// statistics of the variants in this plane.
 pub fn unknowns(planes: &[(&str, &Spread)]) -> Vec<Block> {
     let known: Vec<&(&str, &Spread)> =
         planes.iter().filter(|(_, spread)| spread.range.is_some()).collect();

@@ -224,7 +224,7 @@ fn shown(run: &Run, summary: &Summary) -> String {
     }
 }
 
-/// Puts introductory words before a sentence, and begins the sentence with a lower-case letter.
+/// Puts introductory words before a sentence, and changes the first letter of the sentence to lower case.
 fn behind(begin: &str, sentence: &str) -> String {
     let mut letters = sentence.chars();
     let first = letters.next().filter(|_| !begin.is_empty());
@@ -236,7 +236,8 @@ fn behind(begin: &str, sentence: &str) -> String {
 
 /// Returns the sentences that support the headline.
 ///
-/// If the run was verified, the results of its repeats replace the general warning.
+/// If the run was verified, the results of its repeats replace the warning that a single run is only one possible
+/// course.
 pub(super) fn details(
     run: &Run,
     summary: &Summary,
@@ -273,7 +274,8 @@ pub(super) fn details(
         sentences.push(behind(&shown(run, summary), &sentence));
     }
     sentences.extend(summary.devices.0.iter().filter_map(device));
-    // The component of the motion depends on the plane and on the half of the variants, so the sentence names the run.
+    // The component of the motion depends on the plane and on whether the variant is in the second half of the
+    // variants, so the sentence names the run.
     let shaken = summary.motion.as_ref().map(shaking);
     sentences.extend(shaken.map(|sentence| behind(&shown(run, summary), &sentence)));
     let judged = matches!(run.outcome, Outcome::Stable | Outcome::Collapse { .. });

@@ -145,7 +145,7 @@ fn key(words: &str) -> String {
     words.replace(' ', "_")
 }
 
-/// Returns the schema of an object that has exactly the given properties.
+/// Returns the JSON schema of an object that has exactly the given properties.
 fn closed(meaning: &str, properties: &Value) -> Value {
     let required: Vec<&String> = properties.as_object().into_iter().flat_map(Map::keys).collect();
     json!({

@@ -177,7 +177,8 @@ impl Directions {
         [self.first_right + self.first_left, self.first_away + self.first_near]
     }
 
-    /// Returns the number of barrels that fell across the barrels, and the number of those that fell along the barrels.
+    /// Returns two numbers of fallen barrels: those that fell in the direction across the barrels, and those that fell
+    /// in the direction along the barrels.
     pub fn debris(&self) -> [u32; 2] {
         [self.debris_right + self.debris_left, self.debris_away + self.debris_near]
     }

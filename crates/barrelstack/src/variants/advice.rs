@@ -64,8 +64,8 @@ impl Remedy {
         format!("{}.{}{}{stopped}", capital(&sentence), self.confidence(), self.over_constants())
     }
 
-    /// States, for each sufficient change, the range of the share that falls as the uncertain constants vary. If two
-    /// changes suffice, also compares them: names the change with which fewer stacks fall in most random draws of these
+    /// States, for each sufficient change, the range of the share of stacks that fall, as the uncertain constants vary.
+    /// If two changes suffice, also names the change with which fewer stacks fall in most random draws of these
     /// constants, and states the share of such draws. Returns an empty text if a range is unknown.
     fn over_constants(&self) -> String {
         let range = |one: &Tried| {
@@ -104,8 +104,8 @@ impl Remedy {
         )
     }
 
-    /// States, for each sufficient change, the upper confidence bound of the share that falls,
-    /// adjusted for the number of candidates.
+    /// States, for each sufficient change, the upper confidence bound of the share of stacks that fall, adjusted for
+    /// the number of candidates.
     fn confidence(&self) -> String {
         let at_most = |one: &Tried| one.interval.map(|[_, high]| percent(high));
         let most = match (&self.height, &self.straps) {
@@ -143,7 +143,7 @@ impl Remedy {
         vec![Block::Figure(self.figure(as_it_is)), Block::Table(self.table(in_planes))]
     }
 
-    /// Plots the share of variants that falls after every change; `as_it_is` is this share without a change.
+    /// Plots the share of variants that fall after every change; `as_it_is` is this share without a change.
     fn figure(&self, as_it_is: Option<f64>) -> Figure {
         let percent = |share: f64| 100.0 * share;
         let counted = |one: &Tried| percent(f64::from(one.failed) / f64::from(one.variants.max(1)));
@@ -176,8 +176,8 @@ impl Remedy {
         )
     }
 
-    /// Tabulates every change that was tried; `in_planes` selects the wording for planes instead of that for three
-    /// dimensions.
+    /// Tabulates every change that was tried. If `in_planes` is set, the wording is that for planar models, otherwise
+    /// that for three-dimensional models.
     pub fn table(&self, in_planes: bool) -> Table {
         let [stand, tried] =
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
@@ -241,7 +241,7 @@ fn falls(tried: &Tried) -> String {
     }
 }
 
-/// Describes the share of variants that stands, such as "63 of 64 variants".
+/// Describes how many variants stand, such as "63 of 64 variants".
 fn share(tried: &Tried) -> String {
     let Tried { variants, failed, .. } = tried;
     if *failed == 0 {

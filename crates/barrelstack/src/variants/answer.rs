@@ -16,7 +16,7 @@ use crate::run::{Progress, Run, RunFailure};
 use crate::scenario::{Scenario, View};
 use crate::summary::{Summary, Unfinished};
 
-/// Progress of an answer.
+/// Progress of the computation of an [`Answer`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Advance {
     /// Progress of the variants.
@@ -40,7 +40,7 @@ pub enum Advance {
 /// Selection of the run to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunChoice {
-    /// The medoid of all runs.
+    /// The most typical run: the medoid of the nominal case and of all variants.
     Typical,
     /// The variant of this number; 0 is the nominal case.
     Number(u32),
@@ -97,7 +97,8 @@ impl Answer {
     }
 }
 
-/// Returns the number of the medoid variant over all answers and planes; `None` if an answer has no variants.
+/// Returns the number of the variant that is the most typical one over all answers and planes (the medoid); `None` if
+/// an answer has no variants.
 ///
 /// Only variants that have the same component of the motion in all answers are eligible.
 pub(crate) fn common_number<A: Comparable>(answers: &[&A]) -> Result<Option<u32>, GroundError> {
@@ -142,10 +143,10 @@ pub struct Shown {
     pub stopped: Option<Vec<CaseResult>>,
 }
 
-/// Runs all variants of a scenario, and then the run to be shown, with all recordings; in one plane or in both.
+/// Runs all variants of a scenario; then runs the case to be shown, with all recordings. Stacks are run in one plane or
+/// in both, as the scenario states.
 ///
-/// The observer receives the progress and may cancel; a canceled answer has the results obtained so
-/// far.
+/// The observer receives the progress and may cancel; a canceled answer has the results obtained so far.
 ///
 /// # Errors
 /// As [`Scenario::run`].
@@ -157,7 +158,7 @@ pub fn answer(
     answered(scenario, choice, None, observer)
 }
 
-/// Builds an [`answer`] that shows the medoid, from results of variants that were run elsewhere.
+/// Builds an [`answer`] that shows the most typical run, from results of variants that were run elsewhere.
 ///
 /// `results` has, for each plane, the results of the nominal case and of all variants by number, as
 /// [`run_some`](super::run_some) returns them.

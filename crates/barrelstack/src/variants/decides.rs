@@ -11,7 +11,7 @@ use super::{Plane, Spread};
 use crate::ensemble::CaseResult;
 use crate::scenario::{Basis, Damping, Friction, Interface, NormalLaw, StackInterfaces, Unknowns};
 
-/// Minimum effect of a decisive constant: the change of the share of collapses over the range of the constant.
+/// Smallest change of the share of collapses, over the range of a constant, for which the constant can be decisive.
 const DECISIVE: f64 = 0.2;
 
 /// Fractiles of a constant at which the share of collapses is given.
@@ -57,7 +57,8 @@ described! {
 }
 
 impl Unknown {
-    /// Returns the constant at its 5 % fractile, median and 95 % fractile, each with the share there.
+    /// Returns the constant at its 5 % fractile, median and 95 % fractile, each with the share of collapses at this
+    /// value.
     pub fn low_median_high(&self) -> Option<[&ShareAt; 3]> {
         Some([self.shares.first()?, self.shares.get(FRACTILES.len() / 2)?, self.shares.last()?])
     }
@@ -97,7 +98,7 @@ impl Unknown {
         }
     }
 
-    /// Returns a simple test that measures the constant; `None` if there is none.
+    /// Describes a simple test that measures the constant; `None` if there is none.
     pub fn test(&self) -> Option<&'static str> {
         match self.field {
             FRICTION_BARREL_RACK => Some(
@@ -307,9 +308,9 @@ pub struct Constant<'a> {
 /// Effect of the uncertain constants on the share of collapses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
-    /// Range that contains the share with a probability of 95 % as the uncertain constants vary.
+    /// Range that contains the share of collapses with a probability of 95 % as the uncertain constants vary.
     pub range: [f64; 2],
-    /// Share with all constants as stated.
+    /// Share of collapses if all uncertain constants are at their medians.
     pub as_stated: f64,
     /// The constants, the most influential first.
     pub decides: Vec<Unknown>,
@@ -380,9 +381,12 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     Some(Fitted::of(&fitted, &constants))
 }
 
-/// Returns, for every draw of the uncertain constants, the share of collapses in the plane in which it is larger. Each
-/// draw also samples the error of the regression. The same draw has the same constants for all stacks with the same
-/// planes. `verdicts` holds the verdicts of the variants in every plane. Returns `None` in the same cases as [`range`].
+/// Returns, for every draw of the uncertain constants, the share of collapses in the plane in which more stacks
+/// collapse.
+///
+/// The share also has a random error, drawn from the error distribution of the regression. Draws with the same index
+/// have the same constants for all stacks with the same planes. `verdicts` holds the verdicts of the variants in every
+/// plane. Returns `None` in the same cases as [`range`].
 pub(super) fn draws(planes: &[Plane], verdicts: &[Vec<Option<bool>>]) -> Option<Vec<f64>> {
     let of = |(plane, verdicts): (&Plane, &Vec<_>)| Some(fit(plane, verdicts)?.0.shares());
     let shares = planes.iter().zip(verdicts).map(of).collect::<Option<Vec<Vec<f64>>>>()?;
@@ -419,8 +423,9 @@ fn fit(plane: &Plane, verdicts: &[Option<bool>]) -> Option<(Conditional, Vec<Dra
 }
 
 impl Spread {
-    /// Returns the constant whose measurement by a simple test narrows the range most, and the average width of the
-    /// remaining range; `None` if no measurement narrows the range by more than a tenth.
+    /// Returns the constant whose measurement by a simple test would narrow the range of the share of collapses most,
+    /// and the average width of the range after the measurement; `None` if no measurement would narrow the range by
+    /// more than a tenth.
     pub fn worth_measuring(&self) -> Option<(&Unknown, f64)> {
         let [low, high] = self.range?;
         let tested = self.decides.iter().filter(|one| one.test().is_some());

@@ -68,7 +68,7 @@ impl Point {
         normal_quantile(self.uniform(axis)).clamp(-FARTHEST, FARTHEST)
     }
 
-    /// Returns the deviate of a constant; the deviates of all friction coefficients have a common part.
+    /// Returns the deviate of a constant; the deviates of friction coefficients are correlated through a common part.
     fn constant(&self, axis: Shared, unknowns: &Unknowns) -> f64 {
         let own = self.normal(axis as usize);
         if !axis.is_friction() {

@@ -124,8 +124,8 @@ impl Plane {
         trial
     }
 
-    /// Returns the time (s) after the first loss of a seat at which trials end; `None` if they are
-    /// followed until everything is at rest.
+    /// Returns the time (s) after the first loss of a seat at which runs for the verdict ([`Plane::trial`]) end; `None`
+    /// if they continue until everything is at rest.
     pub fn counted_for(&self) -> Option<f64> {
         Some(after_collapse(&self.trial(0))).filter(|time| time.is_finite())
     }
@@ -150,7 +150,7 @@ impl Plane {
         number > self.count().div_ceil(2)
     }
 
-    /// Returns a caveat about the motion of this plane.
+    /// Returns a warning if the planes share a record that has only one horizontal component.
     fn warning(&self, planes: usize) -> Option<String> {
         let recorded = matches!(self.scenario.motion.source, MotionSource::Record(_));
         (planes > 1 && recorded && self.exchanged.is_none()).then(|| {

@@ -30,7 +30,7 @@ pub use self::search::{ENOUGH, Judged, Verdicts};
 /// ratchets state about 500 daN (STF, standard tension force, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
-/// Number of variants that a thread takes at a time: as many as one bundle of SIMD lanes computes side by side.
+/// Number of variants that a thread takes at a time: as many as it computes side by side in SIMD lanes.
 const BATCH: usize = 8;
 
 described! {
@@ -298,7 +298,7 @@ pub fn strapped_together(scenario: &Scenario, pretension: f64) -> Option<Vec<Str
     Some(strapped(scenario, pretension)?.changes)
 }
 
-/// Returns the fields of a table that the scenario states, as TOML.
+/// Returns, as TOML, those fields of a table that the scenario states.
 fn given(scenario: &Scenario, table: &str) -> Vec<String> {
     let settings = scenario.settings();
     let own = settings.iter().filter(|one| one.source == Source::Given);
@@ -337,7 +337,7 @@ impl Change {
 
 /// The variants of a stack in every plane, to be run on all cores.
 struct InPlanes {
-    /// For each plane the nominal case, followed by its variants.
+    /// For each plane, the nominal case, followed by its variants.
     cases: Vec<Vec<Prepared>>,
     /// Number of finished runs.
     done: AtomicUsize,

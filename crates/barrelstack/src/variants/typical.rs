@@ -15,8 +15,8 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Selects among results, the first of which is that of the nominal case. If no case both has a verdict and was
-    /// shaken, selects the nominal case.
+    /// Selects the runs to show from results, of which the first is that of the nominal case. Only a case that was
+    /// shaken and has a verdict can be selected; if there is no such case, the nominal case is selected.
     pub(super) fn of(results: &[CaseResult]) -> Self {
         let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
         let number = |at: Option<&usize>| at.and_then(|at| u32::try_from(*at).ok()).unwrap_or(0);
@@ -30,9 +30,9 @@ impl Order {
     }
 }
 
-/// Compares two results by severity: a collapse is more severe than standing; of two collapses, the
-/// one with more fallen barrels, then the earlier one; of two standing stacks, the one with the
-/// larger drift.
+/// Compares two results by severity. A collapse is more severe than standing. Of two collapses, the one with more
+/// fallen barrels is more severe or, if the numbers are equal, the earlier one. Of two standing stacks, the one with
+/// the larger drift is more severe.
 fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
     let sooner = |result: &CaseResult| -collapse(result).map_or(f64::INFINITY, |(_, time)| time);
     let drift = |result: &CaseResult| result.demands.top_drift_ratio.unwrap_or(0.0);

@@ -27,8 +27,7 @@ enum Judgment {
     Stands,
     /// No variant falls, but fewer than [`ENOUGH`] variants have a verdict.
     TooFew,
-    /// No variant, or hardly any, falls until this time (s), at which the runs end before the
-    /// motion does.
+    /// The runs end at this time (s), before the motion does; until then, no variant falls, or hardly any.
     Cut(f64),
     /// No variant could be judged.
     None,
@@ -279,8 +278,8 @@ pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
     sentences
 }
 
-/// Returns `true` if the share that falls is small enough for the verdict "Stands", however few
-/// variants were run.
+/// Returns `true` if the share of variants that fall is small enough for the verdict "Stands", however few variants
+/// were run.
 pub(crate) fn stands(spread: &Spread) -> bool {
     judged_share(spread).is_some_and(|share| share <= STANDS)
 }
@@ -367,8 +366,8 @@ fn tenths(value: f64) -> f64 {
     (10.0 * value).round() / 10.0
 }
 
-/// Formats a share in whole percent; a share near 0 or 100 % has as many decimals as its distance from 0 or 100 % needs
-/// for one significant digit: "0.3 %", "99.7 %".
+/// Formats a share in whole percent. Near 0 or 100 %, decimals are added until the distance from 0 or 100 % has one
+/// significant digit: "0.3 %", "99.7 %".
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rest = percent.min(100.0 - percent);

@@ -24,7 +24,8 @@ described! {
 }
 
 impl Robust {
-    /// `true` if kind, mode and first body are the same in the run and in all repeats.
+    /// `true` if the kind of the outcome, the mode of the collapse and the first body that leaves its seat are the same
+    /// in the run and in all repeats.
     pub fn outcome(&self) -> bool {
         self.kind && self.mode && self.first
     }

@@ -7,9 +7,9 @@ pub(super) struct Catalog {
     /// All entries as written, for texts without a placeholder and for scripts.
     entries: HashMap<&'static str, &'static str>,
     templates: Vec<Template>,
-    /// Indices of templates, by a word that occurs in every text that matches the template.
+    /// For a word, the indices of templates that match only texts with this word.
     by_word: HashMap<&'static str, Vec<usize>>,
-    /// Indices of the templates for which no word occurs in every matching text.
+    /// Indices of all templates that are not in `by_word`, because every word in them touches a placeholder.
     wordless: Vec<usize>,
 }
 

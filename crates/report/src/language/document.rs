@@ -31,8 +31,8 @@ impl Document {
         document
     }
 
-    /// Returns the texts of an English document, and the parts of texts, that have no entry in the
-    /// catalog of a language, in alphabetical order.
+    /// Returns, in alphabetical order, the texts and parts of texts of an English document that have no entry in the
+    /// catalog of a language.
     pub fn untranslated(&self, language: Language) -> Vec<String> {
         let Some(catalog) = language.catalog() else { return Vec::new() };
         let translator = Translator::new(catalog);

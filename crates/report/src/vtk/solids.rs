@@ -146,7 +146,8 @@ fn file(solids: &Solids, frame: usize) -> Vec<u8> {
     file.finish()
 }
 
-/// Returns the position of a point of a body: `p + 2 w (v × r) + 2 v × (v × r)` for the quaternion `w, v`.
+/// Returns the position of a point `r` in the frame of a body: `p + r + 2 w (v × r) + 2 v × (v × r)` for a body at `p`
+/// with the quaternion `w, v`.
 fn placed([x, y, z, w, a, b, c]: [f64; 7], point: [f64; 3]) -> [f64; 3] {
     let v = [a, b, c];
     let once = cross(v, point);
@@ -155,7 +156,7 @@ fn placed([x, y, z, w, a, b, c]: [f64; 7], point: [f64; 3]) -> [f64; 3] {
     [x + along(0), y + along(1), z + along(2)]
 }
 
-/// Returns the velocity of the point of a body that is at `place`.
+/// Returns the velocity (m/s) of a point of a body; `place` is the position of the point.
 fn velocity(pose: [f64; 7], [u, v, w, a, b, c]: [f64; 6], place: [f64; 3]) -> [f64; 3] {
     let arm = [place[0] - pose[0], place[1] - pose[1], place[2] - pose[2]];
     let turning = cross([a, b, c], arm);

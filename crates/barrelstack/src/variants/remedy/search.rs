@@ -19,13 +19,13 @@ use super::super::spread::LEVEL;
 /// Share (%) of variants that must stand in every plane.
 pub const ENOUGH: u32 = 95;
 
-/// Number of variants in the first block of a change: as many as one bundle of SIMD lanes computes side by side.
+/// Number of variants in the first block of a change: as many as one core computes side by side in SIMD lanes.
 const FIRST: u32 = 8;
 
 /// Number of variants in every later block.
 const BLOCK: u32 = 16;
 
-/// Candidates of a search, and the number of variants of each.
+/// Candidates of a search, and the number of variants that are simulated for each.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
     /// Number of changes of height. They come first, the highest stack first, and are tried until
@@ -33,7 +33,7 @@ pub(super) struct Plan {
     pub(super) heights: usize,
     /// Number of strap pretensions, from loose to tight; they follow the changes of height.
     pub(super) straps: usize,
-    /// Number of variants of each change.
+    /// Number of variants that are simulated for each change.
     pub(super) variants: u32,
     /// Number of planes; enough variants must stand in each.
     pub(super) planes: usize,
@@ -45,23 +45,23 @@ impl Plan {
         self.heights + self.straps
     }
 
-    /// Returns the confidence level of each interval, chosen so that all hold simultaneously at
-    /// [`LEVEL`].
+    /// Returns the confidence level of a single interval, chosen so that all intervals hold simultaneously with the
+    /// confidence [`LEVEL`].
     pub(super) fn level(&self) -> f64 {
         1.0 - (1.0 - LEVEL) / (self.changes() * self.planes).max(1) as f64
     }
 
-    /// Returns the next block of variants, numbered from zero.
+    /// Returns the block of variants that follows the first `ran` variants; variants are numbered from zero.
     fn block(&self, ran: u32) -> Range<u32> {
         let size = if ran == 0 { FIRST } else { BLOCK };
         ran..ran.saturating_add(size).min(self.variants)
     }
 }
 
-/// Counts of a change that was tried.
+/// Counts of the variants of a change that was tried.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counts {
-    /// Number of counted variants, which are the first by number.
+    /// Number of counted variants; these are the variants with the lowest numbers.
     pub(super) ran: u32,
     /// Number of counted variants that failed, in the plane with the most failures.
     pub(super) failed: u32,
@@ -99,8 +99,8 @@ impl Counts {
         self.whole(plan) && !self.rejected(plan)
     }
 
-    /// Returns the interval of the share that fails in the worse plane; `None` unless all variants
-    /// were counted.
+    /// Returns the confidence interval of the share of variants that fail, in the plane in which more variants fail;
+    /// `None` unless all variants were counted.
     pub(super) fn interval(&self, plan: &Plan) -> Option<Interval> {
         self.whole(plan).then(|| clopper_pearson(self.failed, self.ran, plan.level()))
     }

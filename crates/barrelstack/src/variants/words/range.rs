@@ -3,16 +3,17 @@
 use super::{Placed, percent};
 use crate::variants::{ShareAt, Spread};
 
-/// Largest width of the range of shares for which the sentence states that the uncertain constants matter little.
+/// Largest width of the range of shares of collapses for which the sentence states that the uncertain constants matter
+/// little.
 const NARROW: f64 = 0.1;
 
-/// The sentence also states the share at the median of a constant if this share lies outside the shares at the 5 % and
-/// 95 % fractiles by at least this difference.
+/// The share of collapses at the median of a constant is stated only if it is less than both shares at the 5 % and 95 %
+/// fractiles, or greater than both, by at least this difference.
 const BEYOND: f64 = 0.1;
 
-/// Describes the range of the share as the uncertain constants vary, and the decisive constant, such as
-/// "Depending on the friction, stiffness and damping of the seats, which are uncertain, 31 to 100 % of such stacks
-/// fall in the direction along the barrels; the stiffness of seats decides the outcome: …".
+/// Describes the range of the share of collapses as the uncertain constants vary, and the decisive constant, such as
+/// "Depending on the friction, stiffness and damping of the seats, which are uncertain, 31 to 100 % of such stacks fall
+/// in the direction along the barrels; the stiffness of seats decides the outcome: …".
 pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
     let [low, high] = spread.range?;
     let place = view.map_or_else(String::new, |view| format!(" in the direction {}", view.words()));
@@ -42,8 +43,8 @@ pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
     ))
 }
 
-/// Describes the measurement that narrows the range of the share most; `None` if no measurement
-/// narrows it.
+/// Describes the measurement that would narrow the range of the share of collapses most; `None` if no measurement would
+/// narrow it.
 pub fn measure(spread: &Spread) -> Option<String> {
     let [low, high] = spread.range?;
     let (one, left) = spread.worth_measuring()?;
