@@ -32,7 +32,7 @@ described! {
         pub cellar_hash: String,
         /// Number of stacks.
         pub stacks: usize,
-        /// Motion that the strengths multiply: the main shock, or the record of the aftershock.
+        /// Motion that is multiplied by the factors of the aftershocks: the main shock, or the record of the aftershock.
         pub factor_of: &'static str ["main-shock", "record"],
         /// Number of variants that the statistics count; 1 if only the room as stated was run.
         pub counted: u32,
@@ -261,7 +261,7 @@ fn surviving(shock: &ShockAnswer) -> f64 {
     shock.stood - shock.by_themselves - shock.knocked_over
 }
 
-/// Largest number of stacks that the sentence on the inspection lists.
+/// Largest number of stacks named in the sentence that states which stacks to inspect first.
 const LISTED: usize = 5;
 
 /// Returns the sentences that support the headline: one for each aftershock, and the stacks to inspect first.

@@ -155,7 +155,7 @@ impl Grid {
         ]
     }
 
-    /// Marks as taken all cells whose middle is closer to a polygon than a distance (m).
+    /// Marks as taken all cells whose middle is less than `distance` (m) away from a polygon.
     pub fn take(&mut self, polygon: &Convex, distance: f64) {
         let [lower, upper] = polygon.bounds();
         if polygon.corners().len() < 3 {
@@ -244,7 +244,7 @@ mod tests {
         assert!((square.apart(&beside) - 0.3).abs() < 1e-12);
         let over = Convex::rectangle([0.9, 0.2], [2.0, 0.8]);
         assert!((square.apart(&over) + 0.1).abs() < 1e-12);
-        // Corner to corner, and turned by an eighth of a turn.
+        // The shortest distance is between two corners, and then between an edge and a corner of a square turned by 45°.
         let corner = Convex::rectangle([4.0, 5.0], [6.0, 6.0]);
         assert_eq!(square.apart(&corner), 5.0);
         let turned = Convex::rectangle([-0.5, -0.5], [0.5, 0.5])

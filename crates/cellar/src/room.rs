@@ -188,7 +188,7 @@ pub enum RoomFailure {
         1e3 * depth
     )]
     Overlap {
-        /// The body that comes first, with its stack.
+        /// One of the two bodies, with the name of its stack.
         first: String,
         /// The other body or the obstacle.
         second: String,

@@ -40,7 +40,7 @@ pub enum CellarFailure {
     /// The room cannot be run.
     #[error(transparent)]
     Room(#[from] RoomFailure),
-    /// The result of a variant cannot be kept, or a kept result cannot be used.
+    /// The result of a variant cannot be written to the folder, or a result in the folder cannot be used.
     #[error("{path}: {reason}; remove the file, or keep the results in another folder")]
     Kept {
         /// Path of the file or folder.
@@ -61,7 +61,7 @@ impl From<GroundError> for CellarFailure {
 pub struct Prepared {
     /// The cellar, with its records in memory.
     pub cellar: Cellar,
-    /// Its plan.
+    /// The plan of the cellar.
     pub plan: Plan,
     /// The ground motion along the axes of the room.
     pub ground: Ground,
@@ -600,7 +600,7 @@ pub struct Case {
     pub paths_to_doors: Vec<Option<bool>>,
     /// Walls and columns.
     pub obstacles: Vec<ObstacleCase>,
-    /// Cells of the map that fallen barrels cover at the end.
+    /// For each cell of the map, `true` if a fallen barrel covers it at the end.
     pub map: Vec<bool>,
     /// Time (s) at which the last body came to rest.
     pub end_time: f64,
@@ -654,7 +654,7 @@ pub struct AisleCase {
     pub first: Option<f64>,
     /// Largest speed (m/s) of a barrel while its middle is above the aisle.
     pub fastest: Option<f64>,
-    /// Share of the area of the aisle that is covered at the end.
+    /// Share of the aisle's area that is covered at the end of the run.
     pub covered: f64,
     /// Time (s), counted from the start of the shaking, from which no path as wide as a person leads through the aisle
     /// any more.

@@ -34,11 +34,11 @@ named! {
     pub enum Side {
         /// The side at `x = 0`.
         Left = "left",
-        /// The side at the length of the room.
+        /// The side where `x` is the length of the room.
         Right = "right",
         /// The side at `y = 0`.
         Near = "near",
-        /// The side at the width of the room.
+        /// The side where `y` is the width of the room.
         Far = "far",
     }
 }
@@ -257,7 +257,7 @@ pub fn built_in(name: &str) -> Option<&'static str> {
     BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// A cellar may extend a built-in cellar, or the built-in scenario of a stack.
+/// Language of the files of cellars. A cellar may extend a built-in cellar, or the built-in scenario of a stack.
 const LANGUAGE: Language = Language {
     root: &CELLAR,
     builtin: |name| built_in(name).or_else(|| barrelstack::scenario::builtin::get(name)),
@@ -282,9 +282,9 @@ pub struct Standing {
     pub row: u32,
     /// Number in the row, from 1.
     pub number: u32,
-    /// Index of its block.
+    /// Index of the block of the stack.
     pub block: usize,
-    /// Index of its model in [`Cellar::models`].
+    /// Index of the scenario of the stack in [`Cellar::models`].
     pub model: usize,
     /// Position (m) of the origin of the stack.
     pub at: [f64; 2],
@@ -438,7 +438,7 @@ impl Cellar {
     ) -> Result<Self, ScenarioError> {
         if !self.later.is_empty() {
             let message =
-                "the motion is a sequence already: add a shock to it, and run it".to_owned();
+                "the motion is already a sequence of shocks: add the aftershock to it, and run the cellar".to_owned();
             return Err(self.host.error(&["motion.sequence"], message));
         }
         let mut shock = self.stated().motion.clone();
@@ -741,7 +741,7 @@ fn check(host: &Host, stated: &Scenario) -> Result<(), ScenarioError> {
     Ok(())
 }
 
-/// Reads a list of tables of a limited length.
+/// Reads a list of tables; more than [`MOST_ITEMS`] are an error.
 fn all<T: barrelstack_input::declared::Declared>(
     reader: &Reader<'_>,
     name: &'static str,

@@ -203,7 +203,7 @@ described! {
         pub blocked: Count,
         /// Distribution of the time from which the aisle stays blocked.
         pub blocked_at: Option<Range> as "s",
-        /// Distribution of the share of the area of the aisle that is covered at the end.
+        /// Share of the aisle's area that is covered at the end of the run: distribution over the variants.
         pub covered: Range as "1",
         /// Distribution of the largest speed of a barrel in the aisle.
         pub fastest: Option<Range> as "m/s",
@@ -295,8 +295,8 @@ described! {
         pub barrels_fallen: usize,
         /// Number of stacks in which a body still moves when the shock ends.
         pub still_moving: usize,
-        /// Time in the record of the shock at which its run ends, because all bodies rest, its duration is over, or it
-        /// was stopped.
+        /// End of the run, as a time in the record of the shock. A run ends when all bodies rest or its duration is over,
+        /// unless it is stopped earlier.
         pub end_time: f64 as "s",
         /// Time from the end of the run to the end of the motion of the shock, if stacks still move when the run ends;
         /// 0 if the run covers the motion or all stacks are at rest.
@@ -310,7 +310,8 @@ described! {
         pub variant: u32,
         /// True if this run is the most typical of those that are counted.
         pub typical: bool,
-        /// Time in the record at which the run ends, because all bodies rest, its duration is over, or it was stopped.
+        /// End of the run, as a time in the record. A run ends when all bodies rest or its duration is over, unless it is
+        /// stopped earlier.
         pub end_time: f64 as "s",
         /// Time from the end of the run to the end of its motion, if stacks still move when the run ends; for a
         /// sequence, the longest such time of its shocks; 0 if the run covers the motion or all stacks are at rest.
@@ -532,7 +533,7 @@ pub(crate) fn provenance(prepared: &Prepared) -> Vec<String> {
     all
 }
 
-/// Returns the answers for the shocks of a sequence.
+/// Returns the results of the shocks of a sequence.
 pub(crate) fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> {
     if prepared.later.is_empty() || all.is_empty() {
         return Vec::new();
