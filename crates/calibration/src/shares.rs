@@ -68,8 +68,8 @@ struct Shaken {
 /// Fitted share of stacks that fall, as a function of the parameters, the motion and the height.
 struct Fit {
     share: Conditional,
-    /// For every height of stacks, the mean share of barrels that fall in a falling stack. If no stack of a height fell,
-    /// its value is the mean over all heights.
+    /// For every height of stacks, the mean share of barrels that fall in a falling stack; if no stack of this height
+    /// fell, the mean over all heights.
     fallen: Vec<f64>,
     /// Numbers of levels, standardized to mean 0 and variance 1; empty if there is only one height.
     heights: Vec<f64>,
@@ -79,9 +79,9 @@ struct Fit {
 ///
 /// `heights` holds one scenario for every number of levels that a statement names. Each of `settings.simulations`
 /// parameter sets is drawn from the prior ranges and used to simulate one stack of one of these heights, with random
-/// offsets of its bodies. The motion of the scenario is multiplied by a random factor, because the shaking in a cellar differs from
-/// that at the station ([`Earthquake::motion`]). A probit regression of second degree gives the share of stacks that
-/// fall as a function of the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the
+/// offsets of its bodies. The motion of the scenario is multiplied by a random factor, because the shaking in a cellar
+/// differs from that at the station ([`Earthquake::motion`]). A probit regression of second degree gives the share of
+/// stacks that fall as a function of the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the
 /// likelihood of the statements. Each set has one factor of the motion that is common to all statements, one sample of
 /// the regression, and random proportions of stacks of each height, for which all mixtures are equally probable; the
 /// likelihood includes an error of the model itself ([`MODEL_ERROR`]). The intervals hold the central 95 % of the

@@ -32,7 +32,7 @@ described! {
         pub cellar_hash: String,
         /// Number of stacks.
         pub stacks: usize,
-        /// Motion that is multiplied by the factors of the aftershocks: the main shock, or the record of the aftershock.
+        /// Motion that is multiplied by each factor of `aftershocks`: the main shock, or the record of the aftershock.
         pub factor_of: &'static str ["main-shock", "record"],
         /// Number of variants that the statistics count; 1 if only the room as stated was run.
         pub counted: u32,

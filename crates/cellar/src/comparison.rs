@@ -1,5 +1,5 @@
-//! Layouts of cellars side by side: their losses and capacities, and what changes from one layout to another, variant by
-//! variant.
+//! Layouts of cellars side by side: their losses and capacities, and what changes from one layout to another, variant
+//! by variant.
 
 mod page;
 mod usual;
@@ -237,8 +237,8 @@ pub fn labels(layouts: &[(String, Cellar)]) -> Vec<String> {
     compare::labels_by(&names, &differences)
 }
 
-/// Compares layouts; `unfinished` holds the names of the layouts that were stopped, and `left_out` the changes that were
-/// not run.
+/// Compares layouts; `unfinished` holds the names of the layouts that were stopped, and `left_out` the changes that
+/// were not run.
 pub fn compared(
     layouts: &[Layout],
     unfinished: Vec<String>,

@@ -23,8 +23,8 @@ use crate::world::{PRESSED, World};
 /// Length (s) of a window: longer windows merge islands at larger gaps, shorter ones cost more.
 const WINDOW: f64 = 2e-3;
 
-/// Time (s) for which an island at rest continues at least, if one of its barrels still rolls toward another stack or an
-/// obstacle.
+/// Least time (s) for which the run of an island at rest is continued, if one of its barrels still rolls toward another
+/// stack or an obstacle.
 const ROLLS: f64 = 0.25;
 
 /// Wall-clock time between two calls of the observer.
@@ -197,8 +197,9 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Merges each island that stopped, because a body could have moved too far in the window, with the island or obstacle
-    /// that most restricts how far this body may move. The islands are merged in the order in which they stopped.
+    /// Merges each island that stopped because a body could have moved too far in the window. The other island or
+    /// obstacle is the one that most restricts how far this body may move. The islands are merged in the order in which
+    /// they stopped.
     fn repair(&mut self, until: f64) -> Result<(), RoomFailure> {
         let world = self.world;
         loop {

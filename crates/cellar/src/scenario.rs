@@ -438,7 +438,7 @@ impl Cellar {
     ) -> Result<Self, ScenarioError> {
         if !self.later.is_empty() {
             let message =
-                "the motion is already a sequence of shocks: add the aftershock to it, and run the cellar".to_owned();
+                "the motion is already a sequence of shocks: add the aftershock to it".to_owned();
             return Err(self.host.error(&["motion.sequence"], message));
         }
         let mut shock = self.stated().motion.clone();

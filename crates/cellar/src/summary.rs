@@ -45,8 +45,8 @@ described! {
         pub places: Vec<PlaceAnswer>,
         /// Walls and columns.
         pub obstacles: Vec<ObstacleAnswer>,
-        /// Names of the stacks in the order in which to inspect them after the shaking: by the median of their movement in
-        /// the variants in which they stand, the largest first. Stacks that always fall are not listed.
+        /// Names of the stacks in the order in which to inspect them after the shaking: sorted by the median of their
+        /// movement in the variants in which they stand, the largest first. Stacks that always fall are not listed.
         pub inspection: Vec<String>,
         /// The shocks of a sequence, in order; empty for a single shock, or if no run is counted. For a sequence, all
         /// other values are those of all shocks together: times continue from shock to shock, without the quiet time
@@ -295,8 +295,8 @@ described! {
         pub barrels_fallen: usize,
         /// Number of stacks in which a body still moves when the shock ends.
         pub still_moving: usize,
-        /// End of the run, as a time in the record of the shock. A run ends when all bodies rest or its duration is over,
-        /// unless it is stopped earlier.
+        /// End of the run, as a time in the record of the shock. A run ends when all bodies rest or its duration is
+        /// over, unless it is stopped earlier.
         pub end_time: f64 as "s",
         /// Time from the end of the run to the end of the motion of the shock, if stacks still move when the run ends;
         /// 0 if the run covers the motion or all stacks are at rest.
@@ -310,8 +310,8 @@ described! {
         pub variant: u32,
         /// True if this run is the most typical of those that are counted.
         pub typical: bool,
-        /// End of the run, as a time in the record. A run ends when all bodies rest or its duration is over, unless it is
-        /// stopped earlier.
+        /// End of the run, as a time in the record. A run ends when all bodies rest or its duration is over, unless it
+        /// is stopped earlier.
         pub end_time: f64 as "s",
         /// Time from the end of the run to the end of its motion, if stacks still move when the run ends; for a
         /// sequence, the longest such time of its shocks; 0 if the run covers the motion or all stacks are at rest.

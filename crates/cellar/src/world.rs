@@ -160,8 +160,8 @@ impl<'a> World<'a> {
     }
 }
 
-/// Largest depth (m) by which bodies may overlap if a stack starts from stated poses: in a heap, loads press bodies into
-/// each other.
+/// Largest depth (m) by which bodies may overlap if a stack starts from stated poses: in a heap, loads press bodies
+/// into each other.
 pub(crate) const PRESSED: f64 = 5.0 * ALLOWED;
 
 /// Length (m) by which shifts may at most increase the deepest overlap of a stack at rest.
