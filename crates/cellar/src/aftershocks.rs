@@ -63,7 +63,7 @@ described! {
     /// An aftershock.
     #[derive(Clone, Debug)]
     pub struct Strength {
-        /// Strength, as a factor of the motion that `factor_of` names.
+        /// Factor that multiplies the motion named by `factor_of`.
         pub factor: f64 as "1",
         /// Survival of the stacks that stand after the main shock.
         pub shock: ShockAnswer,
@@ -79,8 +79,8 @@ described! {
         /// For each aftershock, the variants in which the stack falls, out of those in which it stands after the main
         /// shock.
         pub falls: Vec<Count>,
-        /// Distribution of the largest horizontal movement of the stack in the main shock, over the variants in which
-        /// the stack stands.
+        /// Distribution of the largest horizontal displacement of a body of the stack at the end of the main shock,
+        /// over the variants in which the stack stands.
         pub moved: Option<Range> as "m",
     }
 }
@@ -88,7 +88,7 @@ described! {
 /// Results of one variant: one case for each aftershock strength, in the order of the strengths.
 type OfVariant = Vec<Case>;
 
-/// Runs the main shock of all variants of a cellar, and each of several aftershocks after it.
+/// Runs the main shock of every variant of a cellar, and then each of several alternative aftershocks.
 ///
 /// Each strength is a factor by which the motion of the aftershock is multiplied: `record` if it is given, otherwise
 /// the motion of the cellar. The observer receives the progress and may stop the work; the results obtained until then
@@ -96,7 +96,7 @@ type OfVariant = Vec<Case>;
 ///
 /// # Errors
 /// If `strengths` is empty, the cellar already has a sequence of shocks, the scale of its motion cannot be multiplied
-/// by a factor, the plan is wrong, or a stack cannot be built or does not stand.
+/// by a factor, the plan has a problem, or a stack cannot be built or does not stand.
 pub fn aftershocks(
     cellar: &Cellar,
     strengths: &[f64],

@@ -20,7 +20,7 @@ use crate::words;
 pub struct Answer {
     /// The cellar with its plan.
     pub prepared: Prepared,
-    /// Results of the room as stated and of its variants, in order; those that were interrupted are left out.
+    /// Results of the room as stated and of its variants, in order; interrupted runs are left out.
     pub cases: Vec<Case>,
     /// Result of the run that is shown.
     pub case: Case,
@@ -36,7 +36,7 @@ pub struct Answer {
 /// until then are returned.
 ///
 /// # Errors
-/// If the plan is wrong, or a stack cannot be built or does not stand.
+/// If the plan has a problem, or a stack cannot be built or does not stand.
 pub fn answer(
     cellar: &Cellar,
     choice: RunChoice,

@@ -120,9 +120,9 @@ described! {
         pub cost: [f64; 2] as "US$",
         /// The aisles.
         pub aisles: Vec<AisleAnswer>,
-        /// Variants in which at least one aisle is blocked at the end; null if there are no aisles.
+        /// Variants in which at least one aisle is blocked at the end of the run; null if there are no aisles.
         pub some_blocked: Option<Count>,
-        /// Distribution of the time from the start of the shaking to the first barrel in any aisle.
+        /// Distribution of the time from the start of the shaking until the first barrel enters any aisle.
         pub first_barrel: Option<Range> as "s",
         /// Largest force on a wall or column in any variant; null if there are no walls or columns.
         pub peak_force: Option<f64> as "N",
@@ -167,15 +167,15 @@ described! {
         /// Expected loss of wine, under the central assumption on how many fallen barrels burst. This assumption is
         /// less certain than the number of barrels, so no interval is given.
         pub wine_lost: Change as "m3",
-        /// Lower estimate of the cost (barrels that burst, and their wine), under the central assumption; no interval
-        /// is given.
+        /// Lower estimate of the cost (barrels that burst, and their wine), under the central assumption on how many
+        /// burst; no interval is given.
         pub cost_low: Change as "US$",
-        /// Upper estimate of the cost (barrels that burst, and their wine), under the central assumption; no interval
-        /// is given.
+        /// Upper estimate of the cost (barrels that burst, and their wine), under the central assumption on how many
+        /// burst; no interval is given.
         pub cost_high: Change as "US$",
     }
 
-    /// What changes from one layout to another, as means over the pairs.
+    /// Change of one quantity from the first layout to the second, as means over the pairs of variants.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Change {
         /// Mean in the first layout.
@@ -184,8 +184,8 @@ described! {
         pub second: f64 as "that of the field",
         /// Mean in the second layout minus mean in the first.
         pub difference: f64 as "that of the field",
-        /// Bounds of the 95 % interval of the mean difference, computed from the scatter of the difference between the
-        /// variants. The confidence level of 95 % applies to the intervals of all layouts jointly. Null for fewer than
+        /// Bounds of the 95 % interval of the mean difference, computed from the scatter of the differences of the
+        /// pairs. The confidence level of 95 % applies to the intervals of all layouts jointly. Null for fewer than
         /// two pairs.
         pub interval: Option<[f64; 2]> as "that of the field",
     }
@@ -369,8 +369,8 @@ impl Estimate {
 }
 
 impl Change {
-    /// Returns the mean change of pairs of values between 0 and `most`; without an interval if `most` is `None`. The
-    /// confidence level applies to the intervals of `tries` such changes jointly.
+    /// Returns the mean change over pairs of values that lie between 0 and `most`; if `most` is `None`, no interval is
+    /// computed. The confidence level applies to the intervals of `tries` such changes jointly.
     fn of(pairs: &[[f64; 2]], most: Option<f64>, tries: usize) -> Self {
         let mean = |of: &dyn Fn(&[f64; 2]) -> f64| {
             pairs.iter().map(of).sum::<f64>() / pairs.len().max(1) as f64

@@ -122,7 +122,7 @@ pub const PASSAGE: f64 = 0.6;
 /// Largest number of cells of a grid.
 const MOST_CELLS: f64 = 4e6;
 
-/// A grid over a rectangle, in which cells are free or not.
+/// A grid of free and taken cells over a rectangle.
 #[derive(Clone, Debug)]
 pub struct Grid {
     lower: Point,

@@ -220,18 +220,18 @@ impl Island {
         (poses, twists)
     }
 
-    /// Returns the pose of a body in the room, relative to the ground.
+    /// Returns the pose of a body in the frame of the room, relative to the ground.
     pub(crate) fn in_room(&self, body: BodyId) -> Pose<Spatial> {
         self.fixed.frame.pose(self.relative(body))
     }
 
-    /// Returns the velocity of a body in the room, relative to the ground.
+    /// Returns the velocity of a body in the frame of the room, relative to the ground.
     pub(crate) fn velocity(&self, body: BodyId) -> Vec3 {
         let twists = &self.live.running.state.twists;
         self.fixed.frame.vector(twists[body].linear - twists[Stack::GROUND].linear)
     }
 
-    /// Returns the pose of a body in the island, relative to the ground.
+    /// Returns the pose of a body in the frame of the island, relative to the ground.
     fn relative(&self, body: BodyId) -> Pose<Spatial> {
         let poses = &self.live.running.state.poses;
         let Pose { position, orientation } = poses[body];

@@ -16,7 +16,7 @@ use crate::world::World;
 /// bounding spheres of the bodies.
 const MARGIN: f64 = 0.4;
 
-/// Displacement (m) of a body after which the list is rebuilt.
+/// Displacement (m) of a body after which the list of couples is rebuilt.
 const STALE: f64 = 0.1;
 
 /// Distance (m) that a body may move in a window if no other body is near; it corresponds to a speed of 45 m/s.
@@ -50,7 +50,7 @@ pub(crate) struct Nearby {
     of_body: Vec<Vec<u32>>,
     /// Length (m) of the path of every body, summed over all windows so far.
     paths: Vec<f64>,
-    /// Positions (m) of the bodies in the room when the list was made.
+    /// Positions (m) of the bodies in the room when the list of couples was made.
     made_for: Vec<Vec3>,
 }
 
@@ -68,7 +68,7 @@ impl Nearby {
         }
     }
 
-    /// Rebuilds the list if a body has moved far.
+    /// Rebuilds the list of couples if a body has moved more than [`STALE`].
     pub(crate) fn refresh(&mut self, world: &World<'_>, islands: &[Option<Island>]) {
         let moved = |(place, made): (&Vec3, &Vec3)| {
             let moved_by = *place - *made;

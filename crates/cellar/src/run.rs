@@ -197,9 +197,9 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Merges each island that stopped because a body could have moved too far in the window. The other island or
-    /// obstacle is the one that most restricts how far this body may move. The islands are merged in the order in which
-    /// they stopped.
+    /// Merges each island that stopped because a body could have moved too far in the window. The island is merged with
+    /// the island or obstacle that most restricts how far this body may move. Islands that stopped earlier are merged
+    /// first.
     fn repair(&mut self, until: f64) -> Result<(), RoomFailure> {
         let world = self.world;
         loop {

@@ -138,7 +138,7 @@ pub struct Block {
     pub name: Option<String>,
     /// Number of rows, which follow each other along y.
     pub rows: u32,
-    /// Number of stacks in a row, which follow each other along x.
+    /// Number of stacks in a row; they follow each other along x.
     pub stacks: u32,
     /// Position (m), along x and y, of the near left corner of the first stack (of the bounding rectangle of its
     /// footprint).
@@ -257,7 +257,8 @@ pub fn built_in(name: &str) -> Option<&'static str> {
     BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// Language of the files of cellars. A cellar may extend a built-in cellar, or the built-in scenario of a stack.
+/// Language of cellar files: its fields, and the built-in files that a cellar may extend (cellars, and scenarios of one
+/// stack).
 const LANGUAGE: Language = Language {
     root: &CELLAR,
     builtin: |name| built_in(name).or_else(|| barrelstack::scenario::builtin::get(name)),
@@ -426,8 +427,8 @@ impl Cellar {
         self
     }
 
-    /// Returns the cellar with an aftershock: its motion is followed by the same motion, or by a record, scaled by a
-    /// factor.
+    /// Returns the cellar with an aftershock that follows its motion. The aftershock is a record if `record` is given,
+    /// otherwise the same motion; it is multiplied by `factor`.
     ///
     /// # Errors
     /// If the cellar has a sequence of shocks, or a motion whose scale cannot be multiplied by a factor.

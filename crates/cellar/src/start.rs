@@ -292,7 +292,7 @@ impl Row<'_> {
 /// Poses of the bodies of a stack, by body index, and the line of the file that states the last of these poses.
 type Posed = (BTreeMap<usize, [f64; 7]>, usize);
 
-/// Reads a file of shifts or poses; an error states the line.
+/// Reads a file of shifts or poses; an error consists of the line number and the message.
 fn of_file(
     text: &str,
     stacks: &[Standing],

@@ -115,14 +115,14 @@ pub enum Likelihood {
         /// Standard deviation.
         error: f64,
     },
-    /// The share of stacks is at least about a value.
+    /// The share of the stacks that fell is at least about `value`.
     AtLeast {
         /// The value.
         value: f64,
         /// Standard error.
         error: f64,
     },
-    /// The share of stacks is at most about a value.
+    /// The share of the stacks that fell is at most about `value`.
     AtMost {
         /// The value.
         value: f64,
@@ -193,7 +193,7 @@ impl Statements {
     ///
     /// # Errors
     /// If the text is not a file of statements, a statement has no source, a statement that is used lacks a number,
-    /// two statements have the same name, or the spread of the motion is out of range.
+    /// two statements have the same name, or [`Earthquake::motion`] is out of range.
     pub fn read(file: &str, text: &str) -> Result<Self, StatementsError> {
         let read: Self =
             toml::from_str(text).map_err(|error| StatementsError(format!("{file}: {error}")))?;
