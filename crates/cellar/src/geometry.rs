@@ -244,7 +244,7 @@ mod tests {
         assert!((square.apart(&beside) - 0.3).abs() < 1e-12);
         let over = Convex::rectangle([0.9, 0.2], [2.0, 0.8]);
         assert!((square.apart(&over) + 0.1).abs() < 1e-12);
-        // First two corners are closest; then an edge, and a corner of a square turned by 45°.
+        // In the first case, two corners are closest; in the second, an edge and a corner of a square turned by 45°.
         let corner = Convex::rectangle([4.0, 5.0], [6.0, 6.0]);
         assert_eq!(square.apart(&corner), 5.0);
         let turned = Convex::rectangle([-0.5, -0.5], [0.5, 0.5])

@@ -97,7 +97,7 @@ pub(crate) struct Live {
     kept: Vec<usize>,
     /// For every body, the largest distance (m) from its pose at the start of the window.
     pub(crate) travels: Vec<f64>,
-    /// Body that could have moved farther in the next step than [`Island::tubes`] allows.
+    /// Body that, in the next step, could have exceeded the distance that [`Island::tubes`] allows.
     pub(crate) stopped_by: Option<BodyId>,
     /// Time (s) before which the run of the island does not end, because a barrel rolls toward another stack.
     pub(crate) not_before: f64,
@@ -282,8 +282,8 @@ impl Island {
         }
     }
 
-    /// Advances until the next time step would end after `until` (s), or until a body could move farther in that step
-    /// than [`Island::tubes`] allows.
+    /// Advances until the next time step would end after `until` (s), or until a body could, in that step, exceed the
+    /// distance that [`Island::tubes`] allows.
     pub(crate) fn advance(&mut self, world: &World<'_>, until: f64) {
         let Simulation { time_step: step, end_time, .. } = self.fixed.simulation;
         let latest = until + 1e-9 * step;
@@ -325,8 +325,8 @@ impl Island {
         state.time = time;
     }
 
-    /// Updates how far each body has moved since the start of the window. Returns a body that could move farther within
-    /// a time `ahead` (s) than [`Island::tubes`] allows.
+    /// Updates how far each body has moved since the start of the window. Returns a body that could exceed the
+    /// distance that [`Island::tubes`] allows within a time `ahead` (s).
     fn update_travels(&mut self, world: &World<'_>, ahead: f64) -> Option<BodyId> {
         if self.from.is_empty() {
             return None;

@@ -749,7 +749,10 @@ fn all<T: barrelstack_input::declared::Declared>(
 ) -> Result<Vec<T>, ScenarioError> {
     let sections = reader.sections(name)?;
     if sections.len() > MOST_ITEMS {
-        let message = format!("there are {}; a cellar has at most {MOST_ITEMS}", sections.len());
+        let message = format!(
+            "there are {} tables [[{name}]]; a cellar has at most {MOST_ITEMS}",
+            sections.len()
+        );
         return Err(reader.inconsistent(name, message));
     }
     sections.into_iter().map(T::read).collect()
