@@ -106,7 +106,7 @@ fn strapped_at(cellar: &Cellar, pretension: f64) -> Result<Vec<String>, String> 
         return Err("stacks of one level have no levels to strap together".to_owned());
     }
     strapped_together(cellar.stated(), pretension).ok_or_else(|| {
-        "the levels are already strapped together with at least this force, or the straps would tear".to_owned()
+        "the levels already have straps at least this tight, or the straps would tear".to_owned()
     })
 }
 
