@@ -84,8 +84,8 @@ struct Fit {
 /// stacks that fall as a function of the parameters, the factor and the height. Then 20 000 parameter sets are weighted
 /// by the likelihood of the statements. Each set has one factor of the motion that is common to all statements, one
 /// sample of the regression, and random proportions of stacks of each height, for which all mixtures are equally
-/// probable; the likelihood includes an error of the model itself ([`MODEL_ERROR`]). The intervals hold the central 95
-/// % of the weight.
+/// probable; the likelihood includes an error of the model itself ([`MODEL_ERROR`]). The intervals hold the central
+/// 95 % of the weight.
 ///
 /// The result is a function of the statements, the scenarios and the settings, independent of the number of threads.
 /// `report` is called from several threads with the number of completed simulations and the total, and may
