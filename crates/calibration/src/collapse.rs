@@ -283,8 +283,8 @@ fn prepared<'a>(
     Ok(tests)
 }
 
-/// Returns the names of the barrels of a scenario, or an error if the scenario cannot be simulated. Both follow from a
-/// run of one millisecond.
+/// Runs a scenario for one millisecond and returns the names of its barrels, or an error if the scenario cannot be
+/// simulated.
 pub(crate) fn barrels(scenario: &Scenario) -> Result<Vec<String>, CalibrateError> {
     let mut short = scenario.clone();
     short.run.duration = Some(1e-3);

@@ -12,7 +12,7 @@ use super::result::{quoted, rounded, short};
 use super::statistics::mean;
 use super::{CalibrateError, Calibration, Estimate, Table, impact};
 
-/// Properties of the striking mass and its contact, which the file of a drop test does not contain.
+/// Properties of the striking mass and of its contact. The file of a drop test does not contain them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Striker {
     /// Falling mass (kg).

@@ -16,7 +16,7 @@ pub struct Impact {
 /// Number of integration steps per radian of the undamped oscillation, during the approach.
 const STEPS: f64 = 100.0;
 
-/// Speed, relative to depth × natural frequency, below which the mass counts as at rest.
+/// Speed, divided by the product of depth and natural frequency, below which the mass counts as at rest.
 const CREEP: f64 = 1e-9;
 
 /// Computes the impact of a mass, under gravity, on a contact that follows the speed-gap law.

@@ -26,7 +26,7 @@ pub struct ModelShare {
     /// Name of the statement.
     pub statement: String,
     /// Interval that holds the central 90 % of the predicted shares before the statements are used. The shares are
-    /// predicted for random parameters, motions and proportions of stacks of each height.
+    /// predicted for random parameters, random motions and random mixtures of stacks with different numbers of levels.
     pub before: [f64; 2],
     /// Interval that holds the central 90 % of the predicted shares, given all statements.
     pub given: [f64; 2],

@@ -39,7 +39,7 @@ const DRAWS: usize = 20_000;
 /// Mean likelihood of a statement below which a warning is given; 1 is the highest possible likelihood.
 const UNLIKELY: f64 = 0.05;
 
-/// Scenario of the stacks at one height, with the motion of the earthquake.
+/// Scenario of all stacks that have the same number of levels, under the motion of the earthquake.
 #[derive(Clone, Debug)]
 pub struct Height {
     /// Number of levels.
@@ -68,7 +68,7 @@ struct Shaken {
 /// Fitted share of stacks that fall, as a function of the parameters, the motion and the height.
 struct Fit {
     share: Conditional,
-    /// For every height, the mean share of the barrels that fall in a stack that falls; at a height at which no stack
+    /// For every height of stacks, the mean share of barrels that fall in a falling stack; if no stack of this height
     /// fell, the mean over all heights.
     fallen: Vec<f64>,
     /// Numbers of levels, standardized to mean 0 and variance 1; empty if there is only one height.
@@ -77,23 +77,23 @@ struct Fit {
 
 /// Estimates parameters of a stack from statements on how many stacks fell in an earthquake.
 ///
-/// `heights` holds the scenario at every height that a statement names. Each of `settings.simulations` parameter sets
-/// is drawn from the prior ranges and used to simulate one stack at one of the heights, with random offsets of its
-/// bodies. The motion of the scenario is multiplied by a random factor, because the shaking in a cellar differs from
-/// that at the station ([`Earthquake::motion`]). A probit regression of second degree gives the share of stacks that
-/// fall as a function of the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the
-/// likelihood of the statements. Each set has one factor of the motion that is common to all statements, one sample of
-/// the regression, and random proportions of stacks of each height, for which all mixtures are equally probable; the
-/// likelihood includes an error of the model itself ([`MODEL_ERROR`]). The intervals hold the central 95 % of the
-/// weight.
+/// `heights` holds one scenario for every number of levels that a statement names. Each of `settings.simulations`
+/// parameter sets is drawn from the prior ranges and used to simulate one stack of one of these heights, with random
+/// offsets of its bodies. The motion of the scenario is multiplied by a random factor, because the shaking in a cellar
+/// differs from that at the station ([`Earthquake::motion`]). A probit regression of second degree gives the share of
+/// stacks that fall as a function of the parameters, the factor and the height. Then 20 000 parameter sets are weighted
+/// by the likelihood of the statements. Each set has one factor of the motion that is common to all statements, one
+/// sample of the regression, and random proportions of stacks of each height, for which all mixtures are equally
+/// probable; the likelihood includes an error of the model itself ([`MODEL_ERROR`]). The intervals hold the central
+/// 95 % of the weight.
 ///
 /// The result is a function of the statements, the scenarios and the settings, independent of the number of threads.
 /// `report` is called from several threads with the number of completed simulations and the total, and may
 /// cancel the calibration.
 ///
 /// # Errors
-/// If a scenario is not a stack whose contact laws are linear, or cannot be simulated, if a height is missing, or if too
-/// few simulations run to their end; [`CalibrateError::Stopped`] if `report` canceled it.
+/// If a scenario is not a stack whose contact laws are linear, or cannot be simulated, if the scenario of a height is
+/// missing, or if too few simulations run to their end; [`CalibrateError::Stopped`] if `report` canceled it.
 pub fn shares(
     earthquake: &Earthquake,
     statements: &[&Statement],
@@ -119,7 +119,7 @@ pub fn shares(
     };
     let fit = Fit::new(&shaken, heights, settings.seed).ok_or_else(|| {
         unsuited(format!(
-            "only {} of {} simulations run to their end, fewer than {FEWEST_RUNS}: in all others, the stack falls \
+            "only {} of {} simulations run to their end, fewer than {FEWEST_RUNS}; in all others, the stack falls \
              under its own weight or the run fails: start from other values",
             shaken.len(),
             settings.simulations
@@ -297,7 +297,7 @@ impl Fit {
             let down: Vec<f64> = shaken.iter().filter(of).filter_map(|one| one.fallen).collect();
             (!down.is_empty()).then(|| down.iter().sum::<f64>() / down.len() as f64)
         };
-        // If no stack falls at all, the share of barrels is at most that of stacks.
+        // If no stack falls at all, the share of fallen barrels is set to its upper bound, the share of fallen stacks.
         let any = mean(&|_| true).unwrap_or(1.0);
         let fallen =
             (0..heights.len()).map(|height| mean(&|one| one.height == height).unwrap_or(any));

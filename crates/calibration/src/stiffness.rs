@@ -37,8 +37,8 @@ pub fn stiffness(
     let (slope, t) = (found.slope, student_quantile(0.95, found.freedom));
     if slope <= 0.0 {
         return Err(table.unsuited(format!(
-            "the force decreases with penetration ({} N/m): keep only the rows of the loading, and state force \
-             and penetration as positive into the surface",
+            "the force decreases with penetration ({} N/m): keep only the rows measured while the load \
+             increases, and state force and penetration as positive into the surface",
             short(slope)
         )).into());
     }

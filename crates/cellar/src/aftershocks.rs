@@ -32,7 +32,7 @@ described! {
         pub cellar_hash: String,
         /// Number of stacks.
         pub stacks: usize,
-        /// Motion that the strengths multiply: the main shock, or the record of the aftershock.
+        /// Motion that is multiplied by each factor of `aftershocks`: the main shock, or the record of the aftershock.
         pub factor_of: &'static str ["main-shock", "record"],
         /// Number of variants that the statistics count; 1 if only the room as stated was run.
         pub counted: u32,
@@ -63,7 +63,7 @@ described! {
     /// An aftershock.
     #[derive(Clone, Debug)]
     pub struct Strength {
-        /// Strength, as a factor of the motion that `factor_of` names.
+        /// Factor that multiplies the motion named by `factor_of`.
         pub factor: f64 as "1",
         /// Survival of the stacks that stand after the main shock.
         pub shock: ShockAnswer,
@@ -79,8 +79,8 @@ described! {
         /// For each aftershock, the variants in which the stack falls, out of those in which it stands after the main
         /// shock.
         pub falls: Vec<Count>,
-        /// Distribution of the largest horizontal movement of the stack in the main shock, over the variants in which
-        /// the stack stands.
+        /// Distribution of the largest horizontal displacement of a body of the stack at the end of the main shock,
+        /// over the variants in which the stack stands.
         pub moved: Option<Range> as "m",
     }
 }
@@ -88,7 +88,7 @@ described! {
 /// Results of one variant: one case for each aftershock strength, in the order of the strengths.
 type OfVariant = Vec<Case>;
 
-/// Runs the main shock of all variants of a cellar, and each of several aftershocks after it.
+/// Runs the main shock of every variant of a cellar, and then each of several alternative aftershocks.
 ///
 /// Each strength is a factor by which the motion of the aftershock is multiplied: `record` if it is given, otherwise
 /// the motion of the cellar. The observer receives the progress and may stop the work; the results obtained until then
@@ -96,7 +96,7 @@ type OfVariant = Vec<Case>;
 ///
 /// # Errors
 /// If `strengths` is empty, the cellar already has a sequence of shocks, the scale of its motion cannot be multiplied
-/// by a factor, the plan is wrong, or a stack cannot be built or does not stand.
+/// by a factor, the plan has a problem, or a stack cannot be built or does not stand.
 pub fn aftershocks(
     cellar: &Cellar,
     strengths: &[f64],
@@ -261,7 +261,7 @@ fn surviving(shock: &ShockAnswer) -> f64 {
     shock.stood - shock.by_themselves - shock.knocked_over
 }
 
-/// Largest number of stacks that the sentence on the inspection lists.
+/// Largest number of stacks named in the sentence that states which stacks to inspect first.
 const LISTED: usize = 5;
 
 /// Returns the sentences that support the headline: one for each aftershock, and the stacks to inspect first.

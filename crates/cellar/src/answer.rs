@@ -1,4 +1,4 @@
-//! The answer for a cellar: all its variants, and the run that is shown.
+//! Results of a cellar: of all its variants, and of the run that is shown.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -20,7 +20,7 @@ use crate::words;
 pub struct Answer {
     /// The cellar with its plan.
     pub prepared: Prepared,
-    /// Results of the room as stated and of its variants, in order; those that were interrupted are left out.
+    /// Results of the room as stated and of its variants, in order; interrupted runs are left out.
     pub cases: Vec<Case>,
     /// Result of the run that is shown.
     pub case: Case,
@@ -36,7 +36,7 @@ pub struct Answer {
 /// until then are returned.
 ///
 /// # Errors
-/// If the plan is wrong, or a stack cannot be built or does not stand.
+/// If the plan has a problem, or a stack cannot be built or does not stand.
 pub fn answer(
     cellar: &Cellar,
     choice: RunChoice,
@@ -93,9 +93,8 @@ pub fn answer_with(
     Ok(Answer { prepared, cases, case, shown, summary })
 }
 
-/// Runs one part of the variants of a cellar, and keeps their results in a folder. Returns three numbers for this part:
-/// the results in the folder at the end, the variants whose computation failed (their results are not kept), and all
-/// variants.
+/// Runs one part of the variants of a cellar, and keeps their results in a folder. Returns three numbers of variants of
+/// this part: those with a result in the folder, those whose computation failed (their results are not kept), and all.
 ///
 /// # Errors
 /// As for [`answer_with`].

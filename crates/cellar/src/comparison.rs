@@ -1,4 +1,5 @@
-//! Layouts of cellars side by side: loss against capacity, and what changes from one layout to another, variant by variant.
+//! Layouts of cellars side by side: their losses and capacities, and what changes from one layout to another, variant
+//! by variant.
 
 mod page;
 mod usual;
@@ -36,12 +37,12 @@ pub struct Layout {
     pub summary: CellarSummary,
     /// Results of the room as stated and of its variants.
     pub cases: Vec<Case>,
-    /// The room from above, with the places where barrels end.
+    /// Plan of the room, with the places where fallen barrels come to rest.
     pub picture: FloorPlan,
 }
 
 impl Layout {
-    /// Keeps the parts of an answer that a comparison shows, and drops the frames of its run.
+    /// Creates a layout from the parts of an answer that a comparison shows; frames are left out.
     pub fn of(name: String, answer: &Answer) -> Self {
         Self {
             name,
@@ -54,11 +55,11 @@ impl Layout {
 }
 
 described! {
-    /// Layouts of cellars side by side. Losses are those of the whole run. A value is null where an event did not happen,
-    /// or where too few variants were run.
+    /// Layouts of cellars side by side. Losses are those of the whole run. A value is null where an event did not
+    /// happen, or where too few variants were run.
     #[derive(Clone, Debug)]
     pub struct CellarComparison {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["cellar-comparison/1"],
         /// What changes, in one sentence.
         pub headline: String,
@@ -69,7 +70,8 @@ described! {
         /// Names of the layouts, sorted by the share of barrels that fall, the smallest first; layouts without a valid
         /// variant are left out.
         pub order: Vec<String>,
-        /// Requested changes that were not run, because they do not fit or cannot be stated.
+        /// Requested changes that were not run, because the stacks would not fit into the room or the change does not
+        /// apply to the cellar.
         pub left_out: Vec<LeftOut>,
         /// Names of the layouts that were stopped early or never started; they are not compared.
         pub unfinished: Vec<String>,
@@ -88,7 +90,7 @@ described! {
     pub struct LayoutAnswer {
         /// Name of the layout.
         pub name: String,
-        /// Title of its cellar.
+        /// Title of the cellar.
         pub title: String,
         /// Hash of the cellar with every default written out.
         pub cellar_hash: String,
@@ -118,9 +120,9 @@ described! {
         pub cost: [f64; 2] as "US$",
         /// The aisles.
         pub aisles: Vec<AisleAnswer>,
-        /// Variants in which at least one aisle is blocked at the end; null if there are no aisles.
+        /// Variants in which at least one aisle is blocked at the end of the run; null if there are no aisles.
         pub some_blocked: Option<Count>,
-        /// Distribution of the time from the start of the shaking to the first barrel in any aisle.
+        /// Distribution of the time from the start of the shaking until the first barrel enters any aisle.
         pub first_barrel: Option<Range> as "s",
         /// Largest force on a wall or column in any variant; null if there are no walls or columns.
         pub peak_force: Option<f64> as "N",
@@ -165,15 +167,15 @@ described! {
         /// Expected loss of wine, under the central assumption on how many fallen barrels burst. This assumption is
         /// less certain than the number of barrels, so no interval is given.
         pub wine_lost: Change as "m3",
-        /// Lower estimate of the cost (barrels that burst, and their wine), under the central assumption; no interval
-        /// is given.
+        /// Lower estimate of the cost (barrels that burst, and their wine), under the central assumption on how many
+        /// burst; no interval is given.
         pub cost_low: Change as "US$",
-        /// Upper estimate of the cost (barrels that burst, and their wine), under the central assumption; no interval
-        /// is given.
+        /// Upper estimate of the cost (barrels that burst, and their wine), under the central assumption on how many
+        /// burst; no interval is given.
         pub cost_high: Change as "US$",
     }
 
-    /// What changes from one layout to another, as means over the pairs.
+    /// Change of one quantity from the first layout to the second, as means over the pairs of variants.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Change {
         /// Mean in the first layout.
@@ -182,8 +184,9 @@ described! {
         pub second: f64 as "that of the field",
         /// Mean in the second layout minus mean in the first.
         pub difference: f64 as "that of the field",
-        /// Bounds of the 95 % interval of the difference, from the scatter of the differences of the variants. The
-        /// confidence level of 95 % applies to the intervals of all layouts jointly. Null for fewer than two pairs.
+        /// Bounds of the 95 % interval of the mean difference, computed from the scatter of the differences of the
+        /// pairs. The confidence level of 95 % applies to the intervals of all layouts jointly. Null for fewer than
+        /// two pairs.
         pub interval: Option<[f64; 2]> as "that of the field",
     }
 
@@ -234,7 +237,8 @@ pub fn labels(layouts: &[(String, Cellar)]) -> Vec<String> {
     compare::labels_by(&names, &differences)
 }
 
-/// Compares layouts; `unfinished` are the names of those that were stopped, and `left_out` the changes that were not run.
+/// Compares layouts; `unfinished` holds the names of the layouts that were stopped, and `left_out` the changes that
+/// were not run.
 pub fn compared(
     layouts: &[Layout],
     unfinished: Vec<String>,
@@ -365,8 +369,8 @@ impl Estimate {
 }
 
 impl Change {
-    /// Returns the mean change of pairs of values between 0 and `most`; without an interval if `most` is `None`. The
-    /// confidence level applies to the intervals of `tries` such changes jointly.
+    /// Returns the mean change over pairs of values that lie between 0 and `most`; if `most` is `None`, no interval is
+    /// computed. The confidence level applies to the intervals of `tries` such changes jointly.
     fn of(pairs: &[[f64; 2]], most: Option<f64>, tries: usize) -> Self {
         let mean = |of: &dyn Fn(&[f64; 2]) -> f64| {
             pairs.iter().map(of).sum::<f64>() / pairs.len().max(1) as f64

@@ -1,6 +1,6 @@
 //! Contact kinds of bodies, and the contact laws between bodies of different stacks.
 //!
-//! Between bodies of two stacks, the contact laws are those of bodies of one stack that fall on each other.
+//! Bodies of two different stacks have the contact laws of fallen bodies that touch within one stack.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::{Scene, SpatialScene, StackPair};

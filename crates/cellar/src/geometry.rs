@@ -122,7 +122,7 @@ pub const PASSAGE: f64 = 0.6;
 /// Largest number of cells of a grid.
 const MOST_CELLS: f64 = 4e6;
 
-/// A grid over a rectangle, in which cells are free or not.
+/// A grid of free and taken cells over a rectangle.
 #[derive(Clone, Debug)]
 pub struct Grid {
     lower: Point,
@@ -155,7 +155,7 @@ impl Grid {
         ]
     }
 
-    /// Marks as taken all cells whose middle is closer to a polygon than a distance (m).
+    /// Marks as taken all cells whose middle is less than `distance` (m) away from a polygon.
     pub fn take(&mut self, polygon: &Convex, distance: f64) {
         let [lower, upper] = polygon.bounds();
         if polygon.corners().len() < 3 {
@@ -244,7 +244,7 @@ mod tests {
         assert!((square.apart(&beside) - 0.3).abs() < 1e-12);
         let over = Convex::rectangle([0.9, 0.2], [2.0, 0.8]);
         assert!((square.apart(&over) + 0.1).abs() < 1e-12);
-        // Corner to corner, and turned by an eighth of a turn.
+        // In the first case, two corners are closest; in the second, an edge and a corner of a square turned by 45°.
         let corner = Convex::rectangle([4.0, 5.0], [6.0, 6.0]);
         assert_eq!(square.apart(&corner), 5.0);
         let turned = Convex::rectangle([-0.5, -0.5], [0.5, 0.5])

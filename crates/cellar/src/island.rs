@@ -97,7 +97,7 @@ pub(crate) struct Live {
     kept: Vec<usize>,
     /// For every body, the largest distance (m) from its pose at the start of the window.
     pub(crate) travels: Vec<f64>,
-    /// The body that would have left its tube ([`Island::tubes`]) in the next step.
+    /// Body that, in the next step, could have exceeded the distance that [`Island::tubes`] allows.
     pub(crate) stopped_by: Option<BodyId>,
     /// Time (s) before which the run of the island does not end, because a barrel rolls toward another stack.
     pub(crate) not_before: f64,
@@ -220,18 +220,18 @@ impl Island {
         (poses, twists)
     }
 
-    /// Returns the pose of a body in the room, relative to the ground.
+    /// Returns the pose of a body in the frame of the room, relative to the ground.
     pub(crate) fn in_room(&self, body: BodyId) -> Pose<Spatial> {
         self.fixed.frame.pose(self.relative(body))
     }
 
-    /// Returns the velocity of a body in the room, relative to the ground.
+    /// Returns the velocity of a body in the frame of the room, relative to the ground.
     pub(crate) fn velocity(&self, body: BodyId) -> Vec3 {
         let twists = &self.live.running.state.twists;
         self.fixed.frame.vector(twists[body].linear - twists[Stack::GROUND].linear)
     }
 
-    /// Returns the pose of a body in the island, relative to the ground.
+    /// Returns the pose of a body in the frame of the island, relative to the ground.
     fn relative(&self, body: BodyId) -> Pose<Spatial> {
         let poses = &self.live.running.state.poses;
         let Pose { position, orientation } = poses[body];
@@ -264,8 +264,8 @@ impl Island {
         self.live.watches[member].rest.moving((&poses, &twists)).count()
     }
 
-    /// Starts a window, in which each body may move as far as its tube allows; `keeps` is `true` if the island may have
-    /// to return to the start of the window.
+    /// Starts a time window, in which no body may move farther than [`Island::tubes`] allows; `keeps` is `true` if the
+    /// island may have to return to the start of the window.
     pub(crate) fn open(&mut self, keeps: bool) {
         self.from = (0..self.fixed.owners.len()).map(|body| self.relative(body)).collect();
         self.live.travels.fill(0.0);
@@ -282,7 +282,8 @@ impl Island {
         }
     }
 
-    /// Advances until the next time step would end after a time (s), or until a body would leave its tube.
+    /// Advances until the next time step would end after `until` (s), or until a body could, in that step, exceed the
+    /// distance that [`Island::tubes`] allows.
     pub(crate) fn advance(&mut self, world: &World<'_>, until: f64) {
         let Simulation { time_step: step, end_time, .. } = self.fixed.simulation;
         let latest = until + 1e-9 * step;
@@ -324,8 +325,8 @@ impl Island {
         state.time = time;
     }
 
-    /// Updates how far each body has moved since the start of the window. Returns a body that could leave its tube (the
-    /// distance that it may move in the window) within a time `ahead` (s).
+    /// Updates how far each body has moved since the start of the window. Returns a body that could exceed the
+    /// distance that [`Island::tubes`] allows within a time `ahead` (s).
     fn update_travels(&mut self, world: &World<'_>, ahead: f64) -> Option<BodyId> {
         if self.from.is_empty() {
             return None;
@@ -345,7 +346,7 @@ impl Island {
             let travel = moved + turned * reach;
             self.live.travels[body] = self.live.travels[body].max(travel);
             let speed = (twist.linear - ground.1).length() + twist.angular.length() * reach;
-            // Velocities change within a step.
+            // The factor allows for a change of velocity within the step.
             if travel + 1.5 * ahead * speed > self.tubes[body] && first.is_none() {
                 first = Some(body);
             }

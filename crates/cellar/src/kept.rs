@@ -16,7 +16,7 @@ pub struct Kept {
     cellar_hash: String,
 }
 
-/// Name and version of the layout of a file.
+/// Name and version of the file format.
 const SCHEMA: &str = "cellar-variant/1";
 
 /// A file with the result of a variant.

@@ -109,7 +109,7 @@ impl Plan<'_> {
 /// Merges islands that have reached the same time, together with obstacles.
 ///
 /// # Errors
-/// If names of bodies repeat.
+/// If two bodies have the same name.
 pub(crate) fn merged(
     world: &World<'_>,
     islands: Vec<Island>,

@@ -1,8 +1,8 @@
 //! Bodies of different islands that are near each other, and how far each may move before two of them can touch.
 //!
 //! The gap between two bodies is measured when it may have become small. After a measurement, the gap can shrink by at
-//! most the distance that the two bodies travel together; this distance is summed window by window. The gap is measured
-//! again only when this distance may have closed it.
+//! most the sum of the distances that the two bodies travel. This sum is updated in each time window, and the gap is
+//! measured again only when the sum may have closed it.
 
 use barrelstack::watch::Ending;
 use barrelstack_dynamics::join::gap_between;
@@ -12,17 +12,18 @@ use barrelstack_dynamics::{BodyId, Motion, Pose, Spatial, Vec3};
 use crate::island::{Island, Owner, StackBody};
 use crate::world::World;
 
-/// Largest gap (m) between two bodies in the list of couples; it is estimated from the bounding spheres of the bodies.
+/// Gap (m) below which two bodies are put on the list of couples; for this purpose, the gap is estimated from the
+/// bounding spheres of the bodies.
 const MARGIN: f64 = 0.4;
 
-/// Displacement (m) of a body after which the list is rebuilt.
+/// Displacement (m) of a body after which the list of couples is rebuilt.
 const STALE: f64 = 0.1;
 
 /// Distance (m) that a body may move in a window if no other body is near; it corresponds to a speed of 45 m/s.
 pub(crate) const FREE: f64 = 0.09;
 
-/// Two islands are merged if the gap (m) between two of their bodies might become smaller than this in a window. The
-/// merge thus comes before an impact, and does not affect the next step.
+/// Gap (m) between bodies of two islands: if a gap might become smaller than this in a window, the islands are merged.
+/// The merge thus comes before an impact, and does not affect the next step.
 const SLACK: f64 = 2e-3;
 
 /// Least distance (m) that a body may move in a window, even a body at rest.
@@ -38,7 +39,7 @@ struct Couple {
     gap: f64,
     /// Lengths (m) of the paths of the two bodies at the last measurement of the gap.
     since: [f64; 2],
-    /// Lengths (m) that the paths of the two bodies must not exceed in this window.
+    /// For each of the two bodies, the length (m) that its path must not exceed in this window.
     limits: [f64; 2],
 }
 
@@ -47,9 +48,9 @@ pub(crate) struct Nearby {
     couples: Vec<Couple>,
     /// For every body, its couples.
     of_body: Vec<Vec<u32>>,
-    /// Length (m) of the path of every body since the start; it grows while the body is in the list.
+    /// Length (m) of the path of every body, summed over all windows so far.
     paths: Vec<f64>,
-    /// Positions (m) of the bodies in the room when the list was made.
+    /// Positions (m) of the bodies in the room when the list of couples was made.
     made_for: Vec<Vec3>,
 }
 
@@ -67,7 +68,7 @@ impl Nearby {
         }
     }
 
-    /// Rebuilds the list if a body has moved far.
+    /// Rebuilds the list of couples if a body has moved more than [`STALE`].
     pub(crate) fn refresh(&mut self, world: &World<'_>, islands: &[Option<Island>]) {
         let moved = |(place, made): (&Vec3, &Vec3)| {
             let moved_by = *place - *made;
@@ -183,8 +184,8 @@ impl Nearby {
         self.made_for = places;
     }
 
-    /// Returns the couples that may touch within a time (s): two bodies of different islands, or a body and an
-    /// obstacle. For all other couples, sets how far their bodies may move.
+    /// Returns all couples (two bodies of different islands, or a body and an obstacle) that may touch within a time
+    /// `ahead` (s). For all other couples, sets how far their bodies may move.
     pub(crate) fn meetings(
         &mut self,
         world: &World<'_>,
@@ -205,7 +206,7 @@ impl Nearby {
                 }
                 Owner::Obstacle(obstacle) => inside(obstacle),
             };
-            // Numbers that are no longer finite say nothing about gaps.
+            // After a failed computation, poses may not be finite, and gaps are unknown.
             let broken = |island: Option<&Island>| {
                 island.is_some_and(|island| island.live.ending == Some(Ending::Broken))
             };
@@ -307,7 +308,7 @@ impl Nearby {
 }
 
 impl Couple {
-    /// Returns a lower bound of the gap (m).
+    /// Returns a lower bound of the present gap (m) from the measured gap and the path lengths since the measurement.
     fn bound(&self, paths: &[f64], numbers: [usize; 2]) -> f64 {
         let [one, other] = numbers.map(|number| paths[number]);
         self.gap - (one - self.since[0]) - (other - self.since[1])

@@ -13,7 +13,7 @@ use crate::scenario::{Cellar, Door, RoomSpec, Side, Standing};
 use crate::start::starts;
 use crate::words::plural;
 
-/// Depth (m) in front of a door that is to stay free, so that a person can enter.
+/// Depth (m) of the floor in front of a door that must stay free, so that a person can enter.
 const ENTRY: f64 = PASSAGE;
 
 /// Depth (m) of the rectangles that stand for doors in a drawing.
@@ -60,7 +60,7 @@ impl Model {
 /// The plan of a cellar.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Shapes of the stacks, in the order of the models of the cellar.
+    /// Shapes of the stacks, in the order of [`Cellar::models`].
     pub models: Vec<Model>,
     /// The stacks in their places, row by row.
     pub stacks: Vec<Standing>,

@@ -20,8 +20,8 @@ use crate::start::POSE;
 use crate::summary::{CellarSummary, Count, ShockAnswer, ShockStack, ShownStack, counted};
 use crate::words::{sentences, shown_run, span, span_of_shares, tone};
 
-/// Returns the plan of a cellar with the outcome of each stack in the run that is shown, and with the places where
-/// barrels end in all variants.
+/// Returns the plan of a cellar with the outcome of each stack in the run that is shown, and with the share of variants
+/// in which fallen barrels cover each place at the end.
 pub fn picture(answer: &Answer) -> FloorPlan {
     let Answer { prepared, cases, summary, .. } = answer;
     // If the work was stopped, the outcomes of the stacks are unknown.
@@ -415,7 +415,8 @@ impl Answer {
         Ok(files)
     }
 
-    /// Returns the poses of all bodies at the end of the run that is shown, as a file from which another cellar can start.
+    /// Returns the poses of all bodies at the end of the run that is shown, as a CSV file from which another cellar can
+    /// start.
     pub fn state(&self) -> String {
         let pose = |one: &BodyEnd, at: usize| Cell::text(one.own[at].to_string());
         let shown = &self.shown;

@@ -54,7 +54,7 @@ pub struct Touch {
 pub struct StackEnd {
     /// Name of the stack.
     pub name: String,
-    /// Outcome, as for a stack alone.
+    /// Outcome, defined as for a single stack.
     pub outcome: Outcome,
     /// Time (s) of the first loss of seat, and index of the body in [`RoomRun::bodies`].
     pub lost_seat: Option<(f64, usize)>,

@@ -24,7 +24,7 @@ pub struct Placed {
     /// at time zero.
     pub start: Option<Vec<[f64; 7]>>,
     /// `true` if an earlier run of the same room ended in the poses of `start`. Bodies may then overlap by any depth,
-    /// because loads press them into each other. In stated poses, an overlap is an error.
+    /// because loads press them into each other. If the poses were stated instead, a deep overlap is an error.
     pub carried_on: bool,
     /// Shifts of bodies before the run, applied in this order to the poses of `start` if they are given, otherwise to
     /// the poses at rest.
@@ -188,7 +188,7 @@ pub enum RoomFailure {
         1e3 * depth
     )]
     Overlap {
-        /// The body that comes first, with its stack.
+        /// One of the two bodies, with the name of its stack.
         first: String,
         /// The other body or the obstacle.
         second: String,

@@ -23,10 +23,11 @@ use crate::world::{PRESSED, World};
 /// Length (s) of a window: longer windows merge islands at larger gaps, shorter ones cost more.
 const WINDOW: f64 = 2e-3;
 
-/// Least time (s) for which an island continues while one of its barrels rolls toward another stack.
+/// Least time (s) for which the run of an island at rest is continued, if one of its barrels still rolls toward another
+/// stack or an obstacle.
 const ROLLS: f64 = 0.25;
 
-/// Time between two calls of the observer.
+/// Wall-clock time between two calls of the observer.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Progress of a run.
@@ -42,8 +43,8 @@ pub struct Advance {
 
 /// Runs a room until all stacks are at rest or the duration of the run is over.
 ///
-/// After all stacks have settled, the observer receives the progress between windows, about twice a second, and may stop
-/// the run; the results until then are returned.
+/// After all stacks have settled, the observer receives the progress about twice a second. It may stop the run; the
+/// results obtained until then are returned.
 ///
 /// # Errors
 /// If a stack cannot be built or does not stand, or stacks or obstacles overlap.
@@ -196,8 +197,9 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Merges each island in which a body would have left its tube with the island or obstacle that is nearest to this
-    /// body. The islands are merged in the order in which they stopped.
+    /// Merges each island that stopped because a body could have moved too far in the window. The island is merged with
+    /// the island or obstacle that most restricts how far this body may move. Islands that stopped earlier are merged
+    /// first.
     fn repair(&mut self, until: f64) -> Result<(), RoomFailure> {
         let world = self.world;
         loop {
@@ -306,7 +308,8 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Returns `true` if a body that keeps its direction comes near a body of another stack or an obstacle.
+    /// Returns `true` if a body will come near a body of another stack or an obstacle, provided that it keeps its
+    /// direction of motion.
     fn will_meet(&self, island: &Island, body: BodyId) -> bool {
         let world = self.world;
         let Owner::Stack((own, of)) = island.fixed.owners[body] else { return false };
@@ -318,7 +321,7 @@ impl<'a> Running<'a> {
             let along = apart.dot(velocity);
             let aside = apart.cross(velocity).length();
             let speed = velocity.length();
-            // A part of the other body can be ahead even if its middle is not, for example of a long wall.
+            // Part of the other body, such as a long wall, can be ahead even if its middle is not.
             along > -radius * speed && aside < (reach + radius) * speed
         };
         let stacks = (0..world.stacks.len()).filter(|stack| *stack != own);

@@ -31,7 +31,7 @@ use crate::start::{StackStart, starts};
 /// Reason why a cellar cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum CellarFailure {
-    /// The plan is wrong.
+    /// The plan has a problem that prevents a run.
     #[error(transparent)]
     Plan(#[from] barrelstack::scenario::ScenarioError),
     /// A stack cannot be built, does not stand, or would run too long.
@@ -40,7 +40,7 @@ pub enum CellarFailure {
     /// The room cannot be run.
     #[error(transparent)]
     Room(#[from] RoomFailure),
-    /// The result of a variant cannot be kept, or a kept result cannot be used.
+    /// The result of a variant cannot be written to the folder, or a result in the folder cannot be used.
     #[error("{path}: {reason}; remove the file, or keep the results in another folder")]
     Kept {
         /// Path of the file or folder.
@@ -61,7 +61,7 @@ impl From<GroundError> for CellarFailure {
 pub struct Prepared {
     /// The cellar, with its records in memory.
     pub cellar: Cellar,
-    /// Its plan.
+    /// The plan of the cellar.
     pub plan: Plan,
     /// The ground motion along the axes of the room.
     pub ground: Ground,
@@ -81,7 +81,7 @@ pub type Observer<'a> = &'a mut dyn FnMut(&Advance) -> ControlFlow<()>;
 pub struct Later {
     /// The ground motion along the axes of the room.
     pub ground: Ground,
-    /// Time (s) in the record of the shock at which its shaking starts.
+    /// Time (s), in the record of the shock, at which the shaking starts.
     pub onset: f64,
 }
 
@@ -101,7 +101,7 @@ impl Prepared {
     /// Lays out a cellar and reads its motion.
     ///
     /// # Errors
-    /// If the plan is wrong, a stack cannot be built, or the motion cannot be read.
+    /// If the plan has a problem, a stack cannot be built, or the motion cannot be read.
     pub fn new(cellar: &Cellar) -> Result<Self, CellarFailure> {
         let cellar = cellar.with_records()?;
         let plan = Plan::of(&cellar)?;
@@ -465,15 +465,15 @@ impl Prepared {
     }
 }
 
-/// Function that does the work on a variant; the arguments are the number of the variant, the number of threads, and
+/// Function that processes one variant; its arguments are the number of the variant, the number of threads, and
 /// the observer. Returns `None` if the work was interrupted.
 pub(crate) type OfVariant<'a, T> =
     &'a (dyn Fn(u32, usize, Observer<'_>) -> Result<Option<T>, CellarFailure> + Sync);
 
-/// Works on variants, several at a time, like [`Prepared::cases`].
+/// Calls a function for each variant, for several variants at a time, like [`Prepared::cases`].
 ///
 /// # Errors
-/// The first error of the work.
+/// The first error that the function returns.
 pub(crate) fn each<T: Send>(
     numbers: &[u32],
     observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
@@ -600,7 +600,7 @@ pub struct Case {
     pub paths_to_doors: Vec<Option<bool>>,
     /// Walls and columns.
     pub obstacles: Vec<ObstacleCase>,
-    /// Cells of the map that fallen barrels cover at the end.
+    /// For each cell of the map, `true` if a fallen barrel covers it at the end.
     pub map: Vec<bool>,
     /// Time (s) at which the last body came to rest.
     pub end_time: f64,
@@ -626,7 +626,7 @@ pub struct StackCase {
     /// `true` if the stack falls after a body of another stack touched it.
     pub knocked: bool,
     /// First contact with another stack: time (s), index of the other stack, and impulse (N·s) that other stacks exert
-    /// until the first loss of seat ([`Touch::impulse`](crate::Touch::impulse)).
+    /// on this stack until its first loss of seat ([`Touch::impulse`](crate::Touch::impulse)).
     pub touched: Option<(f64, usize, f64)>,
     /// Names of the two bodies of the first contact: the body of this stack, and that of the other stack.
     pub touching: Option<[String; 2]>,
@@ -636,7 +636,7 @@ pub struct StackCase {
     pub burst: [f64; 3],
     /// Expected loss of wine (m³), under the same assumptions.
     pub wine: [f64; 3],
-    /// Largest horizontal displacement (m), at the end, of any body that did not fall.
+    /// Largest horizontal displacement (m) at the end of the run, over the bodies that did not fall.
     pub moved: f64,
 }
 
@@ -650,11 +650,11 @@ impl StackCase {
 /// An aisle in one variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AisleCase {
-    /// Time (s) from the start of the shaking to the first barrel whose middle is above the aisle.
+    /// Time (s) from the start of the shaking until the middle of a barrel is first above the aisle.
     pub first: Option<f64>,
     /// Largest speed (m/s) of a barrel while its middle is above the aisle.
     pub fastest: Option<f64>,
-    /// Share of the area of the aisle that is covered at the end.
+    /// Share of the aisle's area that is covered at the end of the run.
     pub covered: f64,
     /// Time (s), counted from the start of the shaking, from which no path as wide as a person leads through the aisle
     /// any more.

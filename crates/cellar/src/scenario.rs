@@ -34,11 +34,11 @@ named! {
     pub enum Side {
         /// The side at `x = 0`.
         Left = "left",
-        /// The side at the length of the room.
+        /// The side where `x` is the length of the room.
         Right = "right",
         /// The side at `y = 0`.
         Near = "near",
-        /// The side at the width of the room.
+        /// The side where `y` is the width of the room.
         Far = "far",
     }
 }
@@ -138,7 +138,7 @@ pub struct Block {
     pub name: Option<String>,
     /// Number of rows, which follow each other along y.
     pub rows: u32,
-    /// Number of stacks in a row, which follow each other along x.
+    /// Number of stacks in a row; they follow each other along x.
     pub stacks: u32,
     /// Position (m), along x and y, of the near left corner of the first stack (of the bounding rectangle of its
     /// footprint).
@@ -257,7 +257,8 @@ pub fn built_in(name: &str) -> Option<&'static str> {
     BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// A cellar may extend a built-in cellar, or the built-in scenario of a stack.
+/// Language of cellar files: its fields, and the built-in files that a cellar may extend (cellars, and scenarios of one
+/// stack).
 const LANGUAGE: Language = Language {
     root: &CELLAR,
     builtin: |name| built_in(name).or_else(|| barrelstack::scenario::builtin::get(name)),
@@ -282,9 +283,9 @@ pub struct Standing {
     pub row: u32,
     /// Number in the row, from 1.
     pub number: u32,
-    /// Index of its block.
+    /// Index of the block of the stack.
     pub block: usize,
-    /// Index of its model in [`Cellar::models`].
+    /// Index of the scenario of the stack in [`Cellar::models`].
     pub model: usize,
     /// Position (m) of the origin of the stack.
     pub at: [f64; 2],
@@ -426,8 +427,8 @@ impl Cellar {
         self
     }
 
-    /// Returns the cellar with an aftershock: its motion is followed by the same motion, or by a record, scaled by a
-    /// factor.
+    /// Returns the cellar with an aftershock that follows its motion. The aftershock is a record if `record` is given,
+    /// otherwise the same motion; it is multiplied by `factor`.
     ///
     /// # Errors
     /// If the cellar has a sequence of shocks, or a motion whose scale cannot be multiplied by a factor.
@@ -438,7 +439,7 @@ impl Cellar {
     ) -> Result<Self, ScenarioError> {
         if !self.later.is_empty() {
             let message =
-                "the motion is a sequence already: add a shock to it, and run it".to_owned();
+                "the motion is already a sequence of shocks: add the aftershock to it".to_owned();
             return Err(self.host.error(&["motion.sequence"], message));
         }
         let mut shock = self.stated().motion.clone();
@@ -741,14 +742,17 @@ fn check(host: &Host, stated: &Scenario) -> Result<(), ScenarioError> {
     Ok(())
 }
 
-/// Reads a list of tables of a limited length.
+/// Reads a list of tables; more than [`MOST_ITEMS`] are an error.
 fn all<T: barrelstack_input::declared::Declared>(
     reader: &Reader<'_>,
     name: &'static str,
 ) -> Result<Vec<T>, ScenarioError> {
     let sections = reader.sections(name)?;
     if sections.len() > MOST_ITEMS {
-        let message = format!("there are {}; a cellar has at most {MOST_ITEMS}", sections.len());
+        let message = format!(
+            "there are {} tables [[{name}]]; a cellar has at most {MOST_ITEMS}",
+            sections.len()
+        );
         return Err(reader.inconsistent(name, message));
     }
     sections.into_iter().map(T::read).collect()

@@ -75,7 +75,7 @@ impl StartSpec {
         }
     }
 
-    /// Returns the same places with the file identified by its content.
+    /// Returns a copy in which the path of the file is replaced by a fingerprint of its content, if it was read.
     pub(crate) fn by_content(&self) -> Self {
         Self { file: self.file.as_ref().map(FileRef::by_content), ..self.clone() }
     }
@@ -108,7 +108,7 @@ impl StartSpec {
 pub(crate) struct StackStart {
     /// Poses of all bodies.
     pub(crate) poses: Option<Vec<[f64; 7]>>,
-    /// Shifts from these poses, in this order; without poses, from the poses at rest.
+    /// Shifts, applied in this order to `poses`, or to the poses at rest if `poses` is `None`.
     pub(crate) shifts: Vec<Shift>,
     /// Path, in the scenario, of the last entry that moves the stack.
     pub(crate) path: String,
@@ -170,7 +170,7 @@ fn own_shift(standing: &Standing, body: Option<usize>, [x, y, z]: [f64; 3], turn
 fn valid(word: &str, known: &[&str]) -> String {
     match nearest(word, known) {
         Some(near) => format!("did you mean \"{near}\"?"),
-        None => format!("there are \"{}\" to \"{}\"", known[0], known[known.len() - 1]),
+        None => format!("the names are \"{}\" to \"{}\"", known[0], known[known.len() - 1]),
     }
 }
 
@@ -292,7 +292,7 @@ impl Row<'_> {
 /// Poses of the bodies of a stack, by body index, and the line of the file that states the last of these poses.
 type Posed = (BTreeMap<usize, [f64; 7]>, usize);
 
-/// Reads a file of shifts or poses; an error states the line.
+/// Reads a file of shifts or poses; an error consists of the line number and the message.
 fn of_file(
     text: &str,
     stacks: &[Standing],
@@ -325,7 +325,7 @@ fn of_file(
             let of = row.text("body");
             let of = if of.is_empty() { String::new() } else { format!("body \"{of}\" of ") };
             let message = format!(
-                "a second row of {of}stack \"{name}\", after that in line {before}: state their sum in one row"
+                "a second row of {of}stack \"{name}\", after the row in line {before}: state the sum of both in one row"
             );
             return Err((line, message));
         }

@@ -45,8 +45,8 @@ described! {
         pub places: Vec<PlaceAnswer>,
         /// Walls and columns.
         pub obstacles: Vec<ObstacleAnswer>,
-        /// Names of the stacks in the order in which to inspect them after the shaking: by the median of their movement in
-        /// the variants in which they stand, the largest first. Stacks that always fall are not listed.
+        /// Names of the stacks in the order in which to inspect them after the shaking: sorted by the median of their
+        /// movement in the variants in which they stand, the largest first. Stacks that always fall are not listed.
         pub inspection: Vec<String>,
         /// The shocks of a sequence, in order; empty for a single shock, or if no run is counted. For a sequence, all
         /// other values are those of all shocks together: times continue from shock to shock, without the quiet time
@@ -174,7 +174,7 @@ described! {
         pub knocked_over: Count,
         /// Distribution of the time at which the stack first loses a seat.
         pub falls_at: Option<Range> as "s",
-        /// Name of the other stack that most often touches this stack first; null if none touches it.
+        /// Name of the stack that is most often the first to touch this stack; null if none touches it.
         pub touched_by: Option<String>,
         /// Distribution of the time of the first contact with another stack.
         pub touched_at: Option<Range> as "s",
@@ -185,8 +185,8 @@ described! {
         pub barrels_fallen: f64 as "1",
         /// Expected loss of the wine of the stack, under the central assumption on how many fallen barrels burst.
         pub wine_lost: f64 as "m3",
-        /// Distribution of the largest horizontal movement of a body of the stack at the end, over the variants in
-        /// which the stack stands.
+        /// Distribution of the largest horizontal displacement of a body of the stack at the end of the run, over the
+        /// variants in which the stack stands.
         pub moved: Option<Range> as "m",
     }
 
@@ -197,13 +197,13 @@ described! {
         pub name: String,
         /// Variants in which a barrel enters the aisle.
         pub entered: Count,
-        /// Distribution of the time of the first barrel in the aisle.
+        /// Distribution of the time at which the first barrel enters the aisle.
         pub first_barrel: Option<Range> as "s",
         /// Variants in which, at the end of the run, no path 0.6 m wide leads through the aisle.
         pub blocked: Count,
         /// Distribution of the time from which the aisle stays blocked.
         pub blocked_at: Option<Range> as "s",
-        /// Distribution of the share of the area of the aisle that is covered at the end.
+        /// Share of the aisle's area that is covered at the end of the run: distribution over the variants.
         pub covered: Range as "1",
         /// Distribution of the largest speed of a barrel in the aisle.
         pub fastest: Option<Range> as "m/s",
@@ -214,7 +214,8 @@ described! {
     pub struct PlaceAnswer {
         /// Name of the place.
         pub name: String,
-        /// Variants in which a path 0.6 m wide leads from the place to a door at the end; null if there are no doors.
+        /// Variants in which, at the end of the run, a path 0.6 m wide leads from the place to a door; null if there
+        /// are no doors.
         pub leads_out: Option<Count>,
     }
 
@@ -227,8 +228,8 @@ described! {
         pub struck: Count,
         /// Distribution of the largest force, over the variants in which a body strikes the wall or column.
         pub peak: Option<Range> as "N",
-        /// Distribution of the impulse over the whole run, including that of bodies that lean on the wall or column,
-        /// over the variants in which a body strikes it.
+        /// Distribution of the impulse of the whole run, over the variants in which a body strikes the wall or column.
+        /// Bodies that lean on it contribute to the impulse.
         pub impulse: Option<Range> as "N s",
     }
 
@@ -239,7 +240,7 @@ described! {
         pub shock: u32,
         /// Ground motion.
         pub motion: Option<MotionSummary>,
-        /// Time in its record at which the shaking starts.
+        /// Time, in the record of the shock, at which the shaking starts.
         pub onset: f64 as "s",
         /// Mean number of stacks that stand before the shock.
         pub stood: f64 as "1",
@@ -295,8 +296,8 @@ described! {
         pub barrels_fallen: usize,
         /// Number of stacks in which a body still moves when the shock ends.
         pub still_moving: usize,
-        /// Time in the record of the shock at which its run ends, because all bodies rest, its duration is over, or it
-        /// was stopped.
+        /// End of the run, as a time in the record of the shock. A run ends when all bodies rest or its duration is
+        /// over, unless it is stopped earlier.
         pub end_time: f64 as "s",
         /// Time from the end of the run to the end of the motion of the shock, if stacks still move when the run ends;
         /// 0 if the run covers the motion or all stacks are at rest.
@@ -310,7 +311,8 @@ described! {
         pub variant: u32,
         /// True if this run is the most typical of those that are counted.
         pub typical: bool,
-        /// Time in the record at which the run ends, because all bodies rest, its duration is over, or it was stopped.
+        /// End of the run, as a time in the record. A run ends when all bodies rest or its duration is over, unless it
+        /// is stopped earlier.
         pub end_time: f64 as "s",
         /// Time from the end of the run to the end of its motion, if stacks still move when the run ends; for a
         /// sequence, the longest such time of its shocks; 0 if the run covers the motion or all stacks are at rest.
@@ -327,7 +329,8 @@ described! {
         pub barrels_fallen: u32,
         /// The stacks, in the order of the plan.
         pub stacks: Vec<ShownStack>,
-        /// For each aisle, the time from which it stays blocked; null for an aisle that is passable at the end.
+        /// For each aisle, the time from which it stays blocked; null for an aisle that is passable at the end of the
+        /// run.
         pub blocked_at: Vec<Option<f64>> as "s",
     }
 
@@ -351,7 +354,7 @@ described! {
         pub impulse: Option<f64> as "N s",
         /// Number of barrels that fell from the stack.
         pub barrels_fallen: usize,
-        /// Largest horizontal movement, at the end, of any body that did not fall.
+        /// Largest horizontal displacement at the end of the run, over the bodies that did not fall.
         pub moved: f64 as "m",
     }
 }
@@ -532,7 +535,7 @@ pub(crate) fn provenance(prepared: &Prepared) -> Vec<String> {
     all
 }
 
-/// Returns the answers for the shocks of a sequence.
+/// Returns the results of the shocks of a sequence.
 pub(crate) fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> {
     if prepared.later.is_empty() || all.is_empty() {
         return Vec::new();

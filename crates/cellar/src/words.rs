@@ -28,7 +28,7 @@ pub(crate) fn share(count: &Count, of: u32) -> String {
     )
 }
 
-/// Returns a range over a number of variants, such as "2.1 to 3.4 s"; one number where both ends are shown alike.
+/// Returns a range over a number of variants, such as "2.1 to 3.4 s"; one number if both ends round to the same number.
 pub(crate) fn span(range: &Range, of: u32, decimals: usize, unit: &str) -> String {
     let [low, high] = range.stated(of).map(|value| format!("{value:.decimals$}"));
     if low == high { format!("{low} {unit}") } else { format!("{low} to {high} {unit}") }

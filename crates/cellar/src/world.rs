@@ -34,7 +34,7 @@ pub(crate) struct StackOf<'a> {
     pub(crate) thresholds: Thresholds,
     pub(crate) simulation: Simulation,
     pub(crate) kinds: Vec<usize>,
-    /// Radius (m) of every body about its center of mass.
+    /// For every body, the radius (m) of a sphere about its center of mass that encloses it.
     pub(crate) reach: Vec<f64>,
     pub(crate) rank: usize,
     pub(crate) frame: Frame,
@@ -160,11 +160,11 @@ impl<'a> World<'a> {
     }
 }
 
-/// Largest depth (m) by which bodies of stacks that start from stated poses may overlap: loads press the bodies of a heap
+/// Largest depth (m) by which bodies may overlap if a stack starts from stated poses: in a heap, loads press bodies
 /// into each other.
 pub(crate) const PRESSED: f64 = 5.0 * ALLOWED;
 
-/// Largest increase (m) of the deepest overlap of a stack at rest that shifts may cause.
+/// Length (m) by which shifts may at most increase the deepest overlap of a stack at rest.
 const DEEPENED: f64 = 0.5 * ALLOWED;
 
 /// Moves the bodies of a stack to the poses from which it starts, at rest and without contact history.

@@ -139,7 +139,7 @@ fn an_aftershock_follows_the_own_motion() {
     assert_eq!(own.later.len(), 1);
     assert_eq!(own.later[0].source, own.stated().motion.source);
     let said = cellar(TWICE, &[]).with_aftershock(0.5, None).unwrap_err().sentence();
-    assert!(said.contains("sequence already"), "{said}");
+    assert!(said.contains("already a sequence"), "{said}");
     let said = cellar("", &["motion.scale.measure=cav", "motion.scale.value=3 m/s"]);
     let said = said.with_aftershock(0.5, None).unwrap_err().sentence();
     assert!(said.contains("`measure`"), "{said}");

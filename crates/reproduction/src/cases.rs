@@ -66,7 +66,7 @@ pub(super) struct PaperCases {
     pub(super) eight: Scenario,
     /// Eight barrels at the scale of the test.
     pub(super) half: Scenario,
-    /// Four levels along the barrels.
+    /// A stack of four levels in the section along the barrels.
     pub(super) along: Scenario,
     /// The ground motion of the six barrels.
     pub(super) motion: Motion,

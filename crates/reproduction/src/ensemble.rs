@@ -1,5 +1,5 @@
-//! The eight barrels with every contact parameter 10 % lower and higher: "robust against variations
-//! of the contact element parameters within 10 %".
+//! Ensemble of the case with eight barrels, in which contact parameters are 10 % lower or higher. It checks the paper's
+//! statement that the results are "robust against variations of the contact element parameters within 10 %".
 
 use barrelstack::scenario::{Scenario, StackSpec};
 use barrelstack::summary::Summary;

@@ -64,7 +64,7 @@ pub enum ReproduceError {
         source: Box<RunFailure>,
     },
     /// The run of a case returned no result.
-    #[error("{case}: the run was lost")]
+    #[error("{case}: the run returned no result")]
     Lost {
         /// The case.
         case: String,
@@ -93,9 +93,9 @@ impl From<GroundError> for ReproduceError {
 ///
 /// `record` is the file of the Hollywood Storage record, north-south, which cannot be distributed
 /// with the program. Without this file, the six barrels are shaken by the bundled record of South
-/// Napa, and results that depend on the motion are not compared. If `studies` is `true`, the
-/// effects of single quantities and of contact parameters changed by 10 % are studied for each
-/// case, which is most of the work. `progress` is called with the number of completed runs and the
+/// Napa, and results that depend on the motion are not compared. If `studies` is `true`,
+/// sensitivity studies follow, which are most of the work: each changes one quantity at a time, or
+/// the contact parameters by 10 %. `progress` is called with the number of completed runs and the
 /// total number of runs, from several threads, and may stop the work. If it stops the work after
 /// all cases are completed, the result has no studies.
 ///

@@ -44,7 +44,7 @@ pub(super) struct Results {
     pub(super) eight: Ran,
     /// Eight barrels at half scale.
     pub(super) half: Ran,
-    /// Four levels along the barrels.
+    /// A stack of four levels in the section along the barrels.
     pub(super) along: Ran,
     /// Eight barrels under the sine of opposite sign.
     pub(super) mirrored: Summary,

@@ -8,7 +8,7 @@ use super::results::Results;
 use super::study::{Study, Subject};
 use super::{ensemble, figures, stress};
 
-/// The wider band of the stress amplification that the project accepts.
+/// The wider band that the project accepts for the stress amplification.
 const STRESS_BAND: Option<Band> = Some((2.5, 3.5, "2.5 to 3.5"));
 
 /// Returns all rows, in the order of the paper.

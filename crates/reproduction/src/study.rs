@@ -13,7 +13,7 @@ pub(super) enum Subject {
     Six,
     /// Eight barrels under the sine.
     Eight,
-    /// Four levels along the barrels under the sine.
+    /// A stack of four levels in the section along the barrels, under the sine.
     Along,
 }
 
@@ -165,7 +165,7 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
     list
 }
 
-/// Returns the runs of factors, in order.
+/// Returns one run for each change of each factor, in order.
 pub(super) fn jobs(subject: Subject, factors: &[Factor]) -> impl Iterator<Item = Job> {
     factors.iter().flat_map(move |factor| {
         factor.ends.iter().map(move |(label, scenario)| {

@@ -74,7 +74,7 @@ pub(super) fn fluid(stack: &mut StackSpec) {
     stack.barrel.fill = Fill::FullFluid;
 }
 
-/// Returns a scenario whose sine grows and decays over `cycles` cycles.
+/// Returns a scenario whose sine grows over the first `cycles` cycles and decays over the last `cycles` cycles.
 pub(super) fn ramped(scenario: &Scenario, cycles: f64) -> Scenario {
     let mut changed = scenario.clone();
     if let MotionSource::Sine(sine) = &mut changed.motion.source {

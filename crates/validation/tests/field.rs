@@ -79,5 +79,5 @@ fn a_statement_without_a_source_or_a_number_is_refused() {
     assert!(error.contains("`room`: a statement needs a source"), "{error}");
     let vague = text.replacen("error = 0.05\n", "", 1);
     let error = Statements::read("observations.toml", &vague).unwrap_err().to_string();
-    assert!(error.contains("`room`: a likelihood needs levels and its numbers"), "{error}");
+    assert!(error.contains("`room`: a statement with a likelihood needs `levels`"), "{error}");
 }

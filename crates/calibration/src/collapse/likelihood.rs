@@ -14,8 +14,9 @@ pub struct Errors {
     pub reading: f64,
     /// Increase of the standard deviation of a time, in seconds per second after the first loss of seat.
     ///
-    /// The course of a collapse departs more and more from that of any model: in a stack of eight barrels, falls two
-    /// seconds after the loss of seat shift by half a second when one contact parameter changes by 10 %.
+    /// The course of a collapse departs more and more from that of any model. For example, in a stack of eight
+    /// barrels, a barrel that falls two seconds after the loss of seat falls half a second earlier or later if one
+    /// contact parameter changes by 10 %.
     pub growth: f64,
     /// Probability that an observed mode, first barrel or time differs from the simulated one for a reason outside the
     /// model.

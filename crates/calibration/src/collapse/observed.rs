@@ -151,7 +151,7 @@ impl Observed {
             || self.times().any(|(_, time)| time == Time::Never)
             || last == 0.0;
         if open {
-            let remedy = "state it, since something still stood or no time is given";
+            let remedy = "state it, because a barrel or the stack still stood, or no time is given";
             return Err(table
                 .at(row, "until", "how long the test was observed", "nothing", remedy)
                 .into());

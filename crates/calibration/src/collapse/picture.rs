@@ -8,8 +8,7 @@ use super::sampler::Posterior;
 use super::{PreparedTest, alike};
 use crate::figures::measured;
 
-/// Quantiles of the simulated times at the two ends of a bar, which shows the middle 90 % of the times. The times are
-/// weighted by the posterior.
+/// Quantiles that a bar connects: the bar shows the central 90 % of the simulated times, weighted by the posterior.
 const MIDDLE: [f64; 2] = [0.05, 0.95];
 
 /// Plots the posterior weight of the observed modes, and the times of the observed events.

@@ -17,8 +17,8 @@ const FIRST: f64 = 0.3;
 /// Number of rounds after the first.
 const ROUNDS: usize = 5;
 
-/// Fraction of the samples of a later round that are still drawn uniformly from the whole box, which bounds
-/// the weights.
+/// Fraction of the samples of a later round that are still drawn uniformly from the whole box. These samples bound the
+/// weights.
 const WIDE: f64 = 0.2;
 
 /// Minimum effective number of samples, both for a proposal and for the result. If the effective number is smaller, the

@@ -112,7 +112,8 @@ impl<'a> Simulator<'a> {
         self.stopped.load(Ordering::Relaxed)
     }
 
-    /// Runs the scenario unchanged and checks that it has the recorded channels; returns a warning if the stack collapses.
+    /// Runs the scenario unchanged and checks that it has the recorded channels; returns a warning if the stack
+    /// collapses.
     pub(super) fn first(&self) -> Result<Option<String>, CalibrateError> {
         let run = self.run(&vec![0.0; self.tunable.parameters().len()])?;
         if self.stopped() {

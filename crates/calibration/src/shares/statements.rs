@@ -38,7 +38,7 @@ pub struct Earthquake {
     /// Date, magnitude, records and their peaks.
     #[serde(default)]
     pub about: String,
-    /// Distance between record and cellars.
+    /// Where the cellars lie relative to the station that recorded the motion.
     #[serde(default)]
     pub place: String,
     /// Standard deviation of ln r, where r is the motion in a cellar divided by the motion at the station.
@@ -115,14 +115,14 @@ pub enum Likelihood {
         /// Standard deviation.
         error: f64,
     },
-    /// The share of stacks is at least about a value.
+    /// The share of the stacks that fell is at least about `value`.
     AtLeast {
         /// The value.
         value: f64,
         /// Standard error.
         error: f64,
     },
-    /// The share of stacks is at most about a value.
+    /// The share of the stacks that fell is at most about `value`.
     AtMost {
         /// The value.
         value: f64,
@@ -193,7 +193,7 @@ impl Statements {
     ///
     /// # Errors
     /// If the text is not a file of statements, a statement has no source, a statement that is used lacks a number,
-    /// two statements have the same name, or the spread of the motion is out of range.
+    /// two statements have the same name, or [`Earthquake::motion`] is out of range.
     pub fn read(file: &str, text: &str) -> Result<Self, StatementsError> {
         let read: Self =
             toml::from_str(text).map_err(|error| StatementsError(format!("{file}: {error}")))?;
@@ -260,8 +260,8 @@ impl Statements {
         };
         if let Some((other, _)) = found.iter().find(|(other, _)| other.name != quake.name) {
             return Err(StatementsError(format!(
-                "the statements are about two earthquakes, {} and {}, and the scenario has one motion: choose the \
-                 statements of one of them, of {}",
+                "the statements are about two earthquakes, {} and {}, but the scenario has only one motion: choose \
+                 statements about one earthquake from these: {}",
                 quake.name,
                 other.name,
                 known()
@@ -300,14 +300,14 @@ impl Statement {
         } else if self.kind != Kind::Along
             && (self.likelihood().is_none() || self.levels.is_empty())
         {
-            "a likelihood needs levels and its numbers: `low`, `value` and `high` of `barrels` and `stacks`, `value` and `error` of \
-             `most` and `few`, `stacks` of `some`"
+            "a statement with a likelihood needs `levels` and numbers: `low`, `value` and `high` for `barrels` and \
+             `stacks`, `value` and `error` for `most` and `few`, or `stacks` for `some`"
         } else if self.levels.contains(&0) {
             "a stack has at least one level"
         } else if self.value.is_some_and(|value| !ordered(value)) {
-            "shares lie between 0 and 1, `low` is at most `value`, and `value` at most `high`"
+            "shares must lie between 0 and 1, with `low` at most `value`, and `value` at most `high`"
         } else if self.likelihood().is_some_and(|one| !one.is_proper()) {
-            "its error or number of stacks must be above zero"
+            "the standard error or the number of stacks must be above zero"
         } else {
             return None;
         })

@@ -12,7 +12,7 @@ fn chance(point: &[f64], motion: f64, levels: usize) -> f64 {
     normal(0.2 - 1.8 * point[0] + 0.5 * point[1] + 0.6 * motion + 0.7 * (levels as f64 - 5.0))
 }
 
-/// Returns heights of the levels; their scenarios are not simulated.
+/// Returns a [`Height`] for each number of levels; its scenario is not simulated.
 fn heights(levels: &[usize]) -> Vec<Height> {
     let scenario = Scenario::builtin("demo-napa", &[]).unwrap();
     levels.iter().map(|&levels| Height { levels, scenario: scenario.clone() }).collect()
@@ -103,9 +103,9 @@ fn a_file_names_what_is_wrong_in_it() {
         Statements::read("s.toml", &text).map(|_| ()).unwrap_err().to_string()
     };
     for (kind, numbers, part) in [
-        ("most", "levels = [4]\nvalue = 0.9", "needs levels and its numbers"),
+        ("most", "levels = [4]\nvalue = 0.9", "needs `levels` and numbers"),
         ("most", "levels = [4]\nvalue = 1.9\nerror = 0.1", "between 0 and 1"),
-        ("barrels", "levels = [4]\nvalue = 0.5\nlow = 0.6\nhigh = 0.7", "`low` is at most `value`"),
+        ("barrels", "levels = [4]\nvalue = 0.5\nlow = 0.6\nhigh = 0.7", "`low` at most `value`"),
         ("barrels", "levels = [4]\nvalue = 0.5\nlow = 0.5\nhigh = 0.5", "above zero"),
         ("few", "levels = [0]\nvalue = 0.1\nerror = 0.1", "at least one level"),
         ("some", "levels = [4]\nstacks = 0", "above zero"),

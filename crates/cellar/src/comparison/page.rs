@@ -31,7 +31,7 @@ impl Row<'_> {
         })
     }
 
-    /// Returns the cell of a layout with a valid result; `Cell::Missing` for all other rows.
+    /// Calls `cell` if the row is a layout with a valid result; returns `Cell::Missing` for all other rows.
     fn of(&self, cell: impl FnOnce(&LayoutAnswer) -> Cell) -> Cell {
         match self {
             Self::Run(one, _) if one.counted > 0 => cell(one),
@@ -39,7 +39,8 @@ impl Row<'_> {
         }
     }
 
-    /// Returns a cell of the comparison of a layout to the first one; `Cell::Missing` if no variant is paired.
+    /// Calls `cell` if some variants of the layout are compared with the first layout; returns `Cell::Missing` for all
+    /// other rows.
     fn paired(&self, cell: impl FnOnce(&LayoutPair) -> Cell) -> Cell {
         match self {
             Self::Run(_, Some(pair)) if pair.variants > 0 => cell(pair),

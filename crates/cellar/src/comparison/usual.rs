@@ -1,5 +1,5 @@
-//! Usual changes to a room that may reduce the loss and the spread of a collapse. Changes that do not fit are listed
-//! with the reason.
+//! Usual changes to a room that may reduce the losses, or keep a collapse from spreading to other stacks. Changes that
+//! are not possible are listed with the reason.
 
 use barrelstack::RunFailure;
 use barrelstack::device::WalkingStops;
@@ -106,7 +106,7 @@ fn strapped_at(cellar: &Cellar, pretension: f64) -> Result<Vec<String>, String> 
         return Err("stacks of one level have no levels to strap together".to_owned());
     }
     strapped_together(cellar.stated(), pretension).ok_or_else(|| {
-        "the levels are already strapped together as tightly, or the straps would tear".to_owned()
+        "the levels already have straps at least this tight, or the straps would tear".to_owned()
     })
 }
 

@@ -7,8 +7,8 @@ use super::{CellarComparison, Change, Estimate, LayoutAnswer, LayoutPair, LeftOu
 use crate::plan::liters;
 use crate::words::plural;
 
-/// Returns the effect in one sentence or two: what changes from the first layout to the second, or which of several layouts
-/// loses the smallest share of its barrels.
+/// Returns the effect in one sentence or two. For two layouts, it states what changes from the first to the second; for
+/// more, which layout loses the smallest share of its barrels.
 pub fn headline(found: &CellarComparison) -> String {
     if !found.unfinished.is_empty() {
         let done = found.layouts.len();
@@ -94,7 +94,7 @@ fn compared(second: &str, first: &str) -> String {
     format!("{}, compared with \"{first}\"", capital(second))
 }
 
-/// Returns the clause that compares the barrels that fall in a layout with those that fall in the first layout.
+/// Returns a clause that compares the numbers of barrels that fall in the two layouts of a pair.
 fn clause(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> String {
     let Change { first: from, second: to, difference, .. } = pair.barrels_fallen;
     if from == 0.0 && to == 0.0 {
@@ -122,7 +122,7 @@ fn clause(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> Str
     )
 }
 
-/// Returns a clause on the number of barrels that fall; `of` follows the number, such as "of 16 ".
+/// Returns a clause such as "5 of 16 barrels fall"; `of` is the text between number and noun, such as "of 16 ".
 fn fall(barrels: f64, of: &str) -> String {
     let shown = amount(barrels);
     if shown == "1" && of.is_empty() {
@@ -139,8 +139,8 @@ fn words_of(difference: f64, [less, more, same]: [&str; 3]) -> String {
     }
 }
 
-/// Describes the interval of a change and the number of pairs. If the interval includes zero, states that the pairs
-/// prove no difference.
+/// Returns the interval of a change and the number of pairs in words. If the interval includes zero, the words state
+/// that the pairs prove no difference.
 fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutPair) -> String {
     let pairs = variants(pair);
     let Some([low, high]) = change.interval.map(|both| both.map(|bound| scale * bound)) else {
