@@ -105,7 +105,7 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     if installed(&python, "pytest-xdist") {
         tests.args(["-n", "2", "--dist", "loadfile"]);
     }
-    // The tests of the site build it, with its notebooks, where `site` would build it.
+    // The tests of the site build the site with its notebooks, in the same folder as the task `site`.
     tests.env("BARRELSTACK_COMMAND", program(root)).env("BARRELSTACK_SITE", target(root));
     tests.env("MPLBACKEND", "Agg").current_dir(root);
     if what != Some("heavy") {

@@ -183,7 +183,8 @@ pub(crate) fn verdict(verdict: &Verdict) -> Vec<String> {
     std::iter::once(verdict.headline.clone()).chain(sentences).collect()
 }
 
-/// Returns the command that compares the remedy with the stack.
+/// Returns a sentence with the command that compares the stack without and with the remedy (the smallest sufficient
+/// change); `None` if there is no such command.
 pub(crate) fn side_by_side(summary: &AnySummary) -> Option<String> {
     let command = summary.remedy()?.comparison.as_ref()?;
     Some(format!("To compare the stack with and without the change: {command}"))

@@ -380,7 +380,7 @@ mod tests {
             assert!(at <= 0.75 * all, "{at} of {all} s");
             wrong[1] += usize::from(!(0.5..=2.0).contains(&(estimate / all)));
         }
-        // Measured: 11 and 0 of 848.
+        // Measured: 11 of 848 estimates with simulated times are wrong by more than a factor of two, and none without.
         assert!(made > 500 && wrong[0] * 40 <= made && wrong[1] * 100 <= made, "{made} {wrong:?}");
     }
 }

@@ -9,8 +9,8 @@ use serde_json::{Map, Value, json};
 
 use crate::one_line;
 
-/// The schemas of the objects of a document, by name; an object may contain objects of its own
-/// type.
+/// Schemas of all objects in a document, by the name of the object. An object may contain objects of
+/// its own type.
 pub type Objects = Map<String, Value>;
 
 /// A type that has a JSON Schema.

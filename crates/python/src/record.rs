@@ -248,8 +248,9 @@ impl Record {
         Ok(record.into())
     }
 
-    /// Matches one component, or both horizontals over all directions; returns the matched record,
-    /// its largest misfit, and a description of the remaining misfits.
+    /// Matches the response spectrum of one component, or of both horizontals over all directions, to
+    /// a target. Returns the matched record, its largest misfit, and a description of the periods at
+    /// which it misses the target.
     #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python method")]
     fn matched(
         &self,

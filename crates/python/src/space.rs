@@ -119,8 +119,8 @@ impl SpatialRun {
         animated(py, of_run, (rate, between), across, |scene| player(run, scene))
     }
 
-    /// Writes parts of a rendering; for each part, returns its folder or file and the number of
-    /// files.
+    /// Writes the requested parts of the rendering. Returns the folder or file of each part, and its
+    /// number of files.
     #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
     fn render(
         &self,

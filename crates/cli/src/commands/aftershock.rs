@@ -119,7 +119,7 @@ fn residual(
 ) -> anyhow::Result<ExitCode> {
     if args.variants.variant.is_some() {
         bail!(
-            "--variant selects the run that is shown, but with several strengths no run is shown; leave it out"
+            "--variant selects the run that is shown, but with several strengths no run is shown; omit --variant"
         );
     }
     let (cellar, _) = super::cellar::selected(cellar, args.variants)?;

@@ -143,7 +143,7 @@ fn status(broken: bool) -> ExitCode {
     if broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
-/// Adds to an error of a run its position in the scenario, or the name of the scenario. An error of a record that is
+/// Adds the position in the scenario, or the name of the scenario, to the error of a run. An error in a record that is
 /// given on the command line has no position in the scenario.
 fn placed(error: RunFailure, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     if args.record.is_some()

@@ -478,9 +478,9 @@ class Record:
         Parameters
         ----------
         chain
-            Base chain: ``"default"`` (the chain for the processing stage of the record), ``"raw"`` (mean, taper,
-            high-pass at 0.1 Hz, ends closed), ``"compact"`` (the same without pads), or ``"none"``. The other arguments
-            replace its settings.
+            Base chain: ``"default"`` (the chain for the processing stage of the record), ``"raw"`` (remove the mean,
+            taper, high-pass at 0.1 Hz, bring the final velocity and displacement to zero), ``"compact"`` (the same
+            without pads), or ``"none"``. The other arguments replace its settings.
         mean
             ``"keep"``, ``"pre-event"`` or ``"whole"``.
         detrend

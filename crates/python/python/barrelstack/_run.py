@@ -342,7 +342,7 @@ class Run(Pictured[_native.Run]):
         Returns
         -------
         ndarray, shape (arrows, 4)
-            Position x, z (m) and force x, z (N) on the contactor.
+            Position x, z (m), and force x, z (N) on the contactor: the body of the pair whose nodes touch the other.
         """
         return self._native.frame_forces(frame)
 

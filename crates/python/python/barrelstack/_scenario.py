@@ -324,7 +324,7 @@ class Scenario:
         Returns
         -------
         Record or None
-            ``H1``, positive along x, and ``UP``; None for ground at rest.
+            A record with the components ``H1`` (positive along x) and ``UP``; None if the ground is at rest.
 
         Raises
         ------
@@ -372,7 +372,7 @@ class Scenario:
         variant
             The variant to show, 0 for the nominal stack; by default the most typical one.
         remedy
-            Whether to search for a change with which the stack stands, as the command does.
+            Whether to search for a change that keeps the stack up, as ``barrelstack run`` does.
         verify
             Whether to repeat the run, as a check, with half the time step and with barrels displaced by a nanometer.
 
@@ -437,7 +437,7 @@ class Scenario:
         variant
             The variant to show, 0 for the nominal stack; by default the most typical one.
         remedy
-            Whether to search for a change with which the stack stands, as the command does.
+            Whether to search for a change that keeps the stack up, as ``barrelstack run`` does.
         verify
             Whether to repeat the run, as a check, with half the time step and with barrels displaced by a nanometer.
 

@@ -540,7 +540,7 @@ class Study:
 
     @staticmethod
     def ida(folder: str | os.PathLike[str], demand: str = "top_drift_ratio") -> Hunts:
-        """Returns the incremental dynamic analysis of a folder.
+        """Returns the incremental dynamic analysis from the study in a folder.
 
         Parameters
         ----------

@@ -42,9 +42,9 @@ pub struct Share {
     pub fitted: f64,
     /// Probability of a fall with the medians of the catalog, under the unscaled record.
     pub medians: f64,
-    /// Probability of a fall, over the prior.
+    /// Mean and range of the probability of a fall over the prior.
     pub prior: Range,
-    /// Probability of a fall, over the posterior given the statement "half of the barrels".
+    /// Mean and range of the probability of a fall over the posterior, given the statement "half of the barrels".
     pub posterior: Range,
     /// Mean share of barrels that fell, over the stacks that fell.
     pub fallen: f64,

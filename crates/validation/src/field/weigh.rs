@@ -10,7 +10,7 @@ use barrelstack_calibration::shares::{Kind, Likelihood, Statement};
 /// of a scenario. The standard deviation for the fourth unknown, the factor on the motion, depends on the earthquake.
 const SPREADS: [f64; 3] = [0.35, 0.2, 0.6];
 
-/// Ranges of the simulations, at which the prior is cut off.
+/// Smallest and largest simulated value of each unknown. The prior is truncated to these ranges.
 pub(super) const RANGES: [[f64; 2]; UNKNOWNS] =
     [[0.12, 0.75], [0.30, 0.85], [0.7, 13.0], [0.5, 2.0]];
 

@@ -20,7 +20,8 @@ const SOURCE: &str = "statics";
 const MASS: f64 = 40.0;
 const STIFFNESS: f64 = 1e7;
 
-/// Distance (m) of the nodes of a brick from its ends; it allows equal bricks to stand on each other.
+/// Distance (m) from the ends of a brick to its nodes. Without this distance, the nodes of a brick would lie exactly at
+/// the ends of an equal brick below.
 pub(super) const INSET: f64 = 0.02;
 
 fn firm() -> NormalLaw {

@@ -98,7 +98,8 @@ pub(super) enum Chain {
 }
 
 impl Chain {
-    /// Returns the processing of the chain for a record at a stage.
+    /// Returns the processing steps of this chain for a record; `stage` is the processing stage that the
+    /// file states.
     pub(super) fn of(self, stage: Stage) -> Processing {
         match (self, stage) {
             (Self::Default, Stage::Raw) | (Self::Compact, _) => Processing::compact(),
@@ -226,7 +227,7 @@ impl Input {
         }
         first.map_err(|error| match damaged {
             Some(why) => with_option(error)
-                .context(format!("{why:#}; no file beside it states a sensitivity")),
+                .context(format!("{why:#}; no other file in its folder states a sensitivity")),
             None => with_option(error),
         })
     }

@@ -200,8 +200,8 @@ impl Part {
     }
 }
 
-/// Returns the matched record and, if the record misses the target, a description of the periods at
-/// which it does.
+/// Returns the matched record and, if its spectrum misses the target, a description of the periods at
+/// which the spectrum misses.
 fn matched(
     args: &MatchArgs,
     before: &Record,
