@@ -87,7 +87,7 @@ pub(crate) fn stop_at(point: Option<StopPoint>) {
 /// removed.
 pub(crate) fn watch(json: bool) {
     JSON.store(json, Ordering::Relaxed);
-    // On an error the system refuses a handler, so that Ctrl-C terminates the program as usual.
+    // An error means that the system refuses the handler; Ctrl-C then terminates the program as usual.
     drop(ctrlc::set_handler(request_stop));
 }
 

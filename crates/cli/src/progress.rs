@@ -239,7 +239,8 @@ impl Lines {
     /// Reports the progress of work with a known total.
     pub(crate) fn at(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) {
         let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) else { return };
-        // A large decrease means the next part; a small one comes from another thread.
+        // If the amount decreases by more than half, the next part has started. A smaller decrease comes from another
+        // thread.
         let anew = of != line.of || done < 0.5 * line.done;
         (line.done, line.of) = (done, of);
         let (start, first, before) = match line.start {

@@ -194,7 +194,7 @@ impl Record {
             "none" => Processing::none(),
             other => {
                 return Err(PyValueError::new_err(format!(
-                    "there is no chain \"{other}\"; there are \"default\", \"raw\", \"compact\" and \"none\""
+                    "chain: expected \"default\", \"raw\", \"compact\" or \"none\", found \"{other}\""
                 )));
             }
         };
@@ -205,7 +205,7 @@ impl Record {
             Some("whole") => MeanRemoval::Whole,
             Some(other) => {
                 return Err(PyValueError::new_err(format!(
-                    "there is no mean \"{other}\"; there are \"keep\", \"pre-event\" and \"whole\""
+                    "mean: expected \"keep\", \"pre-event\" or \"whole\", found \"{other}\""
                 )));
             }
         };

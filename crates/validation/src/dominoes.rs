@@ -1,4 +1,4 @@
-//! A row of dominoes as a room, and the theory of its wave.
+//! A row of dominoes, modeled as a room in which each domino is a stack, and the theoretical speed of its wave.
 
 use std::ops::ControlFlow;
 
@@ -122,7 +122,7 @@ fn theory_by(thickness: f64, spacing: f64, steps: u32) -> f64 {
     let end = asin(spacing);
     let (before, low) = row(end);
     let (after, high) = row(0.0);
-    // Energy after the hit, from the balance of one cycle: E + released = ½ I ω² J, E = ½ I ω² J²/(J + 1).
+    // Energy after the impact, from the balance of one cycle: E + released = ½ I ω² J, E = ½ I ω² J²/(J + 1).
     let released = high - low;
     let square = 2.0 * released * (before + 1.0) / (inertia * before);
     let start = 0.5 * inertia * square * before * before / (before + 1.0);

@@ -17,7 +17,7 @@ use crate::args::{CheckArgs, PartName, RunArgs, ScenarioArgs, VariantArgs};
 use crate::printer;
 use crate::progress::Progress;
 
-/// Prints the plan of a cellar, and what is wrong with it.
+/// Prints the plan of a cellar, and the problems found in the plan.
 pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCode> {
     if args.table {
         bail!("--table tabulates one stack; leave it out for a cellar");

@@ -120,7 +120,7 @@ fn load_any(args: &ScenarioArgs) -> anyhow::Result<Loaded> {
         return Ok(Loaded::Scenario(Box::new(scenario)));
     }
     match Cellar::builtin(&args.scenario, &overrides) {
-        // A mistyped name may be meant as the name of a file; the library considers only names of built-in scenarios.
+        // The name may be a mistyped file name, but the library considers only names of built-in scenarios.
         Err(error) if built_in(&args.scenario).is_none() => Err(no_such(&args.scenario, &error)),
         found => cellar(found),
     }

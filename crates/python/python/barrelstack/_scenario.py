@@ -31,7 +31,7 @@ def _schema(of: str) -> dict[str, Any]:
 
 
 def _is_file(name: str) -> bool:
-    """Returns True for a path; a name without a dot or a separator that is not a file is a built-in scenario."""
+    """Returns True if a name is a path. If no such file exists, a name without a dot or a separator is built in."""
     return os.path.isfile(name) or any(sign in name for sign in "./\\")
 
 

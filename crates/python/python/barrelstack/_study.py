@@ -354,7 +354,7 @@ class Study:
         Parameters
         ----------
         folder
-            Folder for the results: new, empty, or with results of this study, which then continues.
+            Folder for the results: new, empty, or with results of this study, which is then continued.
         workers
             Number of threads; by default, one per core. Results do not depend on the number of threads.
         progress

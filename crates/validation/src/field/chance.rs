@@ -238,7 +238,7 @@ mod tests {
             let point = Point { unknowns: [friction, 0.5, 3.0, 1.0], azimuth: 0.0 };
             let found = fit.of(levels, &point, false, None);
             let expected = truth(levels, friction);
-            // The measured difference is 0.02 at most.
+            // In these cases, the largest difference is 0.02.
             assert!((found - expected).abs() < 0.05, "{levels} {friction}: {found} {expected}");
         }
     }

@@ -1,4 +1,5 @@
-//! Numbers of the hindcasts: shares by height and view, posteriors, and likelihoods along each unknown.
+//! Numbers of the hindcasts: shares of stacks that fall, by study and height; posteriors of the unknowns; likelihoods
+//! of the statements as functions of each unknown.
 
 use std::fmt::Write as _;
 
@@ -70,7 +71,7 @@ pub struct Bin {
     pub given: String,
     /// Index of the unknown.
     pub unknown: usize,
-    /// The bin.
+    /// Lower and upper edge of the bin.
     pub range: [f64; 2],
     /// Mean likelihood, 1 at most.
     pub likelihood: f64,
@@ -83,7 +84,7 @@ pub struct Results {
     pub shares: Vec<Share>,
     /// Posteriors, the prior first.
     pub posteriors: Vec<Posterior>,
-    /// Likelihoods along each unknown.
+    /// Mean likelihood of each statement, in each bin of each unknown.
     pub bins: Vec<Bin>,
     /// For each statement, its name and its predicted value, over the prior and over the posterior given the statement
     /// "half".

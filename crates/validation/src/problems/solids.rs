@@ -129,7 +129,7 @@ fn default_step() -> Problem {
     })
 }
 
-/// Creates a body with exact contacts, without nodes.
+/// Creates a body whose contacts are computed from its exact shape instead of from individual nodes.
 fn solid(name: &str, shape: Shape, pose: Pose<Planar>) -> Body<Planar> {
     let rounds = Nodes::Rounds(shape.rounds(1.0));
     Body {

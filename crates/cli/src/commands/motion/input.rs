@@ -267,7 +267,7 @@ impl Choice {
             record.stage
         );
         if record.format == "barrelstack" {
-            // The file states its own processing history.
+            // A file in the program's own format already states its processing steps.
             for note in &mut chosen.notes {
                 if let Some(step) = note.strip_prefix("processing: ") {
                     *note = step.to_owned();

@@ -229,7 +229,7 @@ fn matched(
     Ok((after, (!missed.is_empty()).then(|| missed_in_words(&missed))))
 }
 
-/// Tabulates the spectra before and after matching and the target at some periods.
+/// Tabulates, at some periods, the target and the spectra before and after matching.
 fn comparison(
     part: &Part,
     [before, after]: [&Record; 2],
