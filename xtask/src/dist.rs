@@ -359,7 +359,7 @@ fn crates(root: &Path) -> anyhow::Result<()> {
     fs::remove_dir_all(own).context("cannot remove the compiled packages")
 }
 
-/// Builds the package for Debian from the static command, which depends on no library.
+/// Builds the package for Debian from the statically linked program, which depends on no library.
 fn deb(root: &Path) -> anyhow::Result<()> {
     let binary = static_binary(root)?;
     let packed = binary.parent().context("a folder")?;

@@ -140,8 +140,8 @@ pub(crate) fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
     Ok(python)
 }
 
-/// Returns the Python interpreter of the environment, in which the present package is installed;
-/// `None` if maturin cannot be installed.
+/// Installs the package, as built from the sources, into the virtual environment. Returns the Python
+/// interpreter of the environment; `None` if maturin cannot be installed.
 ///
 /// The environment is kept between runs.
 fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {

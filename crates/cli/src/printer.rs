@@ -48,7 +48,7 @@ pub(crate) fn help(help: &clap::Error) -> anyhow::Result<()> {
     printed(help.print().and_then(|()| std::io::stdout().flush()))
 }
 
-/// Converts the outcome of printing a result.
+/// Returns an error if printing a result has failed, unless the reader has closed the pipe.
 fn printed(result: std::io::Result<()>) -> anyhow::Result<()> {
     const WHERE: &str = "cannot write to standard output";
     match result {

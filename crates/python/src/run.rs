@@ -92,8 +92,8 @@ pub(crate) fn rendered(
     Ok(written.into_iter().map(|one| (one.place, one.files)).collect())
 }
 
-/// Returns a page that contains only the player of a scene, which shows the time interval `between`
-/// (s) at `rate` frames per second.
+/// Returns a page that contains only an animation of a scene, which shows the time interval `between`
+/// (s) with `rate` frames per second of simulated time.
 pub(crate) fn animated(
     py: Python<'_>,
     (title, end_time): (&str, f64),
@@ -259,7 +259,7 @@ impl Run {
         pdf_in(py, (paper, language), || report::answer_document(&self.answer))
     }
 
-    /// Returns a page that contains only the player.
+    /// Returns a page that contains only an animation of the run.
     fn animation(&self, py: Python<'_>, rate: f64, between: Option<[f64; 2]>) -> PyResult<String> {
         let run = self.run();
         let of_run = (run.scenario.title.as_str(), run.end_time);

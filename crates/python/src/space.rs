@@ -111,7 +111,7 @@ impl SpatialRun {
         pdf_in(py, (paper, language), || document(&self.answer))
     }
 
-    /// Returns a page that contains only the player.
+    /// Returns a page that contains only an animation of the run.
     fn animation(&self, py: Python<'_>, rate: f64, between: Option<[f64; 2]>) -> PyResult<String> {
         let run = &self.answer.run;
         let of_run = (run.scenario.title.as_str(), run.end_time);

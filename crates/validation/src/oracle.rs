@@ -14,7 +14,7 @@ use crate::GRAVITY;
 pub struct Rocker {
     /// Slenderness angle α (rad): the arctangent of width divided by height.
     pub alpha: f64,
-    /// p = √(3g/4R) (rad/s).
+    /// Frequency parameter p = √(3g/4R) (rad/s), with the half-diagonal R.
     pub rate: f64,
     /// Ratio η of the angular velocities after and before an impact.
     pub restitution: f64,

@@ -96,8 +96,8 @@ class Record:
         ----------
         source
             A path, the bytes of a file, or several paths whose components form one record. Archives of
-            ``numpy.savez(file, acceleration=…, dt=0.01)`` are accepted too; the name of an array may end in that of the
-            component (``acceleration_UP``).
+            ``numpy.savez(file, acceleration=…, dt=0.01)`` are accepted too; the name of an array may end with the
+            name of its component (``acceleration_UP``).
         unit
             Unit of acceleration for files that state none: ``"g"``, ``"m/s2"``, ``"cm/s2"``, ``"gal"``.
         time_step
