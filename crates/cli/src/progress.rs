@@ -198,7 +198,7 @@ pub(crate) struct Lines {
     last: Option<Mutex<LastLine>>,
 }
 
-/// State of the lines of a piece of work.
+/// State of the progress lines for one piece of work.
 struct LastLine {
     /// Time of the last line.
     last: Instant,

@@ -243,7 +243,7 @@ struct CollapseArgs {
 }
 
 typed! {
-    /// A parameter by its name on the command line.
+    /// The parameters, by their names on the command line.
     enum Fitted of Parameter {
         K = Self::Stiffness,
         C = Self::Damping,

@@ -66,8 +66,8 @@ impl PageArgs {
     }
 }
 
-/// Adds the command-line option that caused an error to the error. A position in a study file would not help, because
-/// the command generates the studies.
+/// Names the command-line option that caused an error in the error message. A position in a study file would not help,
+/// because the command generates the studies.
 pub(super) fn of_option(error: StudyError, motions: &str, out: &Path) -> anyhow::Error {
     let option = match error {
         StudyError::Stopped => return Stopped.into(),

@@ -47,7 +47,7 @@ pub struct Share {
     pub prior: Range,
     /// Mean and range of the probability of a fall over the posterior, given the statement "half of the barrels".
     pub posterior: Range,
-    /// Mean share of barrels that fell, over the stacks that fell.
+    /// Mean share of fallen barrels in the stacks that fell.
     pub fallen: f64,
 }
 
@@ -345,7 +345,8 @@ fn posterior(given: &str, draws: &[[f64; UNKNOWNS]], weights: &[f64]) -> Posteri
     }
 }
 
-/// Returns the edges of bins that divide the range of the barrel–rack friction in equal ratios.
+/// Returns the edges of `count` bins that cover the range of the barrel–rack friction. The ratio of successive edges is
+/// constant.
 fn bins(count: usize) -> Vec<f64> {
     let [low, high] = weigh::RANGES[0];
     (0..=count).map(|at| low * libm::pow(high / low, at as f64 / count as f64)).collect()

@@ -112,7 +112,7 @@ fn pounded() -> Result<RoomRun, Failure> {
     run(&room, 1)
 }
 
-/// Creates the problems of two equal blocks, A and B, that strike each other across a gap, and of a wall.
+/// Creates the problems of two equal blocks, A and B, and a wall: A strikes B across a gap; B then strikes the wall.
 ///
 /// Since the masses are equal and the contacts are elastic, the blocks exchange their velocities. A moves to B and
 /// stops; B moves to the wall, returns to A and stops; A then moves back at the initial speed. The impulse of the wall

@@ -113,7 +113,7 @@ pub(super) struct Worked {
 }
 
 impl Worked {
-    /// Wraps a record as read, to be measured after the default processing of a scenario.
+    /// Wraps a record as read. Before it is measured, the default processing of a scenario is applied.
     pub(super) fn as_read(record: Record) -> Self {
         let before = Chain::Default.of(record.stage);
         Self { record, before }
