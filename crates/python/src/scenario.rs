@@ -243,8 +243,8 @@ fn run_choice(variant: Option<u32>, count: u32) -> PyResult<RunChoice> {
     }
 }
 
-/// Returns the scenario with the given number of variants, if any, and the number of variants that
-/// are to be run.
+/// Returns the scenario with the given number of variants (by default, its own number), and this
+/// number.
 pub(crate) fn with_variants(
     of: &barrelstack::Scenario,
     variants: Option<u32>,

@@ -66,7 +66,7 @@ impl PageArgs {
     }
 }
 
-/// Names the command-line option that caused an error in the error message. A position in a study file would not help,
+/// Prefixes an error with the command-line option that caused the error. A position in a study file would not help,
 /// because the command generates the studies.
 pub(super) fn of_option(error: StudyError, motions: &str, out: &Path) -> anyhow::Error {
     let option = match error {

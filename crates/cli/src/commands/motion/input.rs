@@ -416,7 +416,7 @@ fn instruments_of_file(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     Ok(found)
 }
 
-/// Reads an XML file, and returns those of its channels for which it states a sensitivity.
+/// Reads an XML file, and returns the channels for which the file states a sensitivity.
 fn read_station_xml(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     let text = bytes(path)?;
     station_xml(&String::from_utf8_lossy(&text)).with_context(|| path.display().to_string())
