@@ -133,9 +133,9 @@ typed! {
 typed! {
     /// Yes or no.
     enum YesOrNo of bool {
-        /// Do it.
+        /// Bring the final velocity and displacement to zero.
         Yes = true,
-        /// Do not do it.
+        /// Leave the final velocity and displacement as they are.
         No = false,
     }
 }
