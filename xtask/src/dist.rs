@@ -1,4 +1,4 @@
-//! Packages of a release, each by one command, which the workflows of the forge call as well.
+//! Packages of a release. One command makes each package, and the CI workflows call the same commands.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use crate::web;
 /// Version of all packages.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Tools for wheels.
+/// Tools that build and check wheels.
 const WHEEL_TOOLS: [&str; 5] =
     ["maturin>=1.9,<2", "ziglang>=0.13,<0.16", "auditwheel", "abi3audit", "twine"];
 
@@ -90,7 +90,7 @@ fn all(root: &Path) -> anyhow::Result<()> {
     checksums(root)
 }
 
-/// Returns the target of static commands for the processor of this machine.
+/// Returns the target triple with which a statically linked program is built for the processor of this machine.
 fn static_target() -> String {
     format!("{}-unknown-linux-musl", std::env::consts::ARCH)
 }
@@ -108,7 +108,7 @@ fn host() -> anyhow::Result<String> {
     Ok(line.context("rustc does not state its host")?.to_owned())
 }
 
-/// Returns a message unless a target is installed.
+/// Returns an error if a target is not installed; the message states how to install it.
 fn require(target: &str) -> anyhow::Result<()> {
     let show = ["--print", "target-libdir", "--target", target];
     let output = Command::new("rustc").args(show).output().context("cannot start rustc")?;
@@ -147,7 +147,8 @@ fn binary(root: &Path, triple: &str) -> anyhow::Result<()> {
     for file in ["LICENSE-MIT", "LICENSE-APACHE", "README.md", "CHANGELOG.md"] {
         fs::copy(root.join(file), pack.join(file))?;
     }
-    // A binary for another processor does not run here; the command of this machine prints the same texts.
+    // A program for another processor does not run here. In that case, a program that is built for this machine prints
+    // the completions and the manual pages, which are the same.
     let runs = Command::new(&packed).arg("--version").stdout(Stdio::null()).status();
     let speaks = if runs.is_ok_and(|status| status.success()) {
         packed.clone()
@@ -179,7 +180,7 @@ fn state(file: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the static command that `dist binary` has packed for Linux.
+/// Returns the path of the statically linked program that `dist binary` has packed for Linux.
 fn static_binary(root: &Path) -> anyhow::Result<PathBuf> {
     let triple = static_target();
     let file = folder(root).join(format!("barrelstack-{VERSION}-{triple}/barrelstack"));
@@ -187,7 +188,8 @@ fn static_binary(root: &Path) -> anyhow::Result<PathBuf> {
     Ok(file)
 }
 
-/// Runs the demo with the static command in a folder that contains nothing else, as the root of the file system.
+/// Runs the demo with the statically linked program under `chroot`, in a folder that contains no other file, so that a
+/// dependency on a file of the system would fail.
 fn in_empty_root(root: &Path) -> anyhow::Result<()> {
     let empty = folder(root).join("empty-root");
     if empty.exists() {
@@ -213,15 +215,15 @@ fn in_empty_root(root: &Path) -> anyhow::Result<()> {
     state(&empty.join("out/demo/report.html"))
 }
 
-/// Returns the Python interpreter of an environment with some tools.
+/// Returns the Python interpreter of a virtual environment in which the `needed` tools are installed.
 fn tools(root: &Path, name: &str, needed: &[&str]) -> anyhow::Result<PathBuf> {
     let python = environment_at(&target(root).join(name))?;
     checked(pip(&python).args(needed), "the installation of tools by pip")?;
     Ok(python)
 }
 
-/// Builds a wheel for a target and checks what it needs of the system: one for every Python, or one for a free-threaded
-/// interpreter, which does not have the stable interface.
+/// Builds a wheel for a target, and checks its system requirements. The wheel has the stable interface and runs on
+/// every Python; with `free`, it is for this free-threaded interpreter, which does not have the stable interface.
 fn wheel(root: &Path, triple: &str, free: Option<&str>) -> anyhow::Result<()> {
     if triple != "universal2-apple-darwin" {
         require(triple)?;
@@ -235,7 +237,7 @@ fn wheel(root: &Path, triple: &str, free: Option<&str>) -> anyhow::Result<()> {
         build.args(["--interpreter", python]);
     }
     if triple.contains("linux") {
-        // The linker of zig links against old versions of glibc and musl, on any distribution.
+        // On any Linux distribution, the linker of zig can link against old versions of glibc and musl.
         let musl = triple.ends_with("musl");
         let policy = if musl { "musllinux_1_2" } else { "manylinux_2_17" };
         build.args(["--zig", "--compatibility", policy]);
@@ -259,13 +261,13 @@ fn wheel(root: &Path, triple: &str, free: Option<&str>) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns `true` if a wheel is one for a free-threaded Python, such as `barrelstack-0.1.0-cp314-cp314t-….whl`.
+/// Returns `true` if a wheel is for a free-threaded Python, such as `barrelstack-0.1.0-cp314-cp314t-….whl`.
 fn is_free_threaded(wheel: &Path) -> bool {
     let name = wheel.to_string_lossy();
     name.split('-').nth_back(1).is_some_and(|interface| interface.ends_with('t'))
 }
 
-/// Builds the wheel for a free-threaded interpreter, and tries it there.
+/// Builds the wheel for a free-threaded interpreter, and tests it with this interpreter.
 fn free_threaded(root: &Path, python: &str) -> anyhow::Result<()> {
     let lock = "import sys, sysconfig; sys.exit(not sysconfig.get_config_var('Py_GIL_DISABLED'))";
     let free =
@@ -287,8 +289,9 @@ fn wheels(root: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Installs the wheel for this system into new environments of some Python interpreters, with the oldest and the newest
-/// numpy that they can have, and runs two examples of the package, one of them with two threads.
+/// Tests the wheel for this system with some Python interpreters. For each interpreter, and for the oldest and the
+/// newest supported version of numpy, installs the wheel into a new virtual environment and runs two examples of the
+/// package, one of them with two threads.
 fn try_wheel(root: &Path, pythons: &[&str]) -> anyhow::Result<()> {
     ensure!(!wheels(root)?.is_empty(), "no wheel; run `cargo xtask dist wheel`");
     let mut tried = 0;
@@ -313,7 +316,7 @@ fn try_wheel(root: &Path, pythons: &[&str]) -> anyhow::Result<()> {
             let versions = "import sys, numpy, barrelstack; \
                             print(sys.version.split()[0], 'numpy', numpy.__version__, 'barrelstack', \
                             barrelstack.__version__)";
-            // Away from the sources, so that the installed package is imported.
+            // The working directory is not the source folder, so that the installed package is imported.
             let mut import = inside(&python);
             checked(import.args(["-c", versions]).current_dir(&new), "the import")?;
             for name in ["stack.py", "threads.py"] {
@@ -329,7 +332,7 @@ fn try_wheel(root: &Path, pythons: &[&str]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Packs the sources of the Python package, and builds a wheel from them alone.
+/// Packs the sources of the Python package.
 fn sdist(root: &Path) -> anyhow::Result<()> {
     let python = tools(root, "wheel-tools", &WHEEL_TOOLS)?;
     let out = folder(root).join("wheels");
@@ -342,21 +345,21 @@ fn sdist(root: &Path) -> anyhow::Result<()> {
     state(&file)
 }
 
-/// Packs every published crate and compiles what was packed, without publishing.
+/// Packs every published crate and compiles the packed sources, without publishing.
 fn crates(root: &Path) -> anyhow::Result<()> {
     let head = Command::new("git").args(["rev-parse", "HEAD"]).current_dir(root).output()?;
     ensure!(head.status.success(), "this folder is no clone, so there is no commit to pack");
-    // Cargo keeps the packed sources of a version by the path of the folder that they come from, so each commit has a
-    // folder of its own; otherwise crates would be compiled with the dependencies of an earlier commit.
+    // Cargo would reuse packed sources of the same version from the same folder, and would compile crates with the
+    // dependencies of an earlier commit. Therefore each commit has its own folder.
     let own = folder(root).join(format!("crates-{}", String::from_utf8_lossy(&head.stdout).trim()));
     let mut publish = Command::new(cargo());
-    // What is packed are the committed files; uncommitted changes are an error of cargo.
+    // Cargo packs the committed files, and fails if there are uncommitted changes.
     publish.args(["publish", "--dry-run", "--workspace", "--locked", "--target-dir"]).arg(&own);
     checked(publish.current_dir(root), "the packages of the crates")?;
     fs::remove_dir_all(own).context("cannot remove the compiled packages")
 }
 
-/// Builds the package for Debian from the static command, which depends on no library.
+/// Builds the package for Debian from the statically linked program, which depends on no library.
 fn deb(root: &Path) -> anyhow::Result<()> {
     let binary = static_binary(root)?;
     let packed = binary.parent().context("a folder")?;
@@ -470,7 +473,8 @@ mod tests {
     use crate::USAGE;
     use crate::steps::root;
 
-    /// Commands of workflows that prepare a machine, by their beginnings; all work is a task.
+    /// Beginnings of the commands that a workflow may run to prepare a machine or to publish. Every other command must
+    /// be a task of `cargo xtask`.
     const PREPARES: [&str; 5] =
         ["rustup ", "cargo install --locked ", "bash .ci/run", "gh release ", "cargo publish "];
 

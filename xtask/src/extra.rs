@@ -23,8 +23,8 @@ pub(crate) struct Extra {
 /// The oldest toolchain that builds the workspace: `rust-version` in `Cargo.toml`.
 pub(crate) const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
-/// Returns a command that starts a program of the oldest toolchain, which may have been installed
-/// under the name of its first release, or a message that it is missing.
+/// Returns a command that starts a program of the oldest toolchain, or a message that this toolchain
+/// is missing. The toolchain may be installed as `1.x` or as `1.x.0`.
 pub(crate) fn of_oldest(words: &[&str]) -> Result<Command, String> {
     let started = |name: &str| with(Command::new("rustup"), &["run", name]);
     for name in [OLDEST.to_owned(), format!("{OLDEST}.0")] {

@@ -1,4 +1,5 @@
-//! The example programs of the crates that are of use alone: built from nothing, with their CPU time.
+//! Builds the example programs in the READMEs of some crates without any compiled dependency, and measures the CPU
+//! time.
 
 use std::fs;
 use std::path::Path;
@@ -10,10 +11,10 @@ use crate::dist::folder;
 use crate::python::checked;
 use crate::steps::cargo;
 
-/// Folders of the crates whose READMEs contain a program, whether it is built with the default features, and the largest
-/// CPU time (s) of its build.
+/// Programs to build: folder of the crate whose README contains the program, `true` to build it with the default
+/// features, and largest CPU time (s) of the build.
 ///
-/// docs/install.md states what was measured.
+/// `docs/install.md` states the measured times.
 const PROGRAMS: [(&str, bool, f64); 4] = [
     ("dynamics", true, 60.0),
     ("motion", true, 60.0),
@@ -21,7 +22,8 @@ const PROGRAMS: [(&str, bool, f64); 4] = [
     ("stack", true, 90.0),
 ];
 
-/// Builds the program of each README from nothing in the dev profile, as a new user does, prints the CPU time and runs it.
+/// Builds the program of each README in the dev profile without any compiled dependency, as a new user does, prints the
+/// CPU time, and runs the program.
 pub(crate) fn measure(root: &Path) -> anyhow::Result<()> {
     for (name, default, most) in PROGRAMS {
         let readme = fs::read_to_string(root.join("crates").join(name).join("README.md"))?;
@@ -64,7 +66,7 @@ fn children() -> anyhow::Result<f64> {
         fs::read_to_string("/proc/self/stat").context("CPU time is measured on Linux only")?;
     let fields: Vec<&str> =
         text.rsplit(')').next().unwrap_or_default().split_whitespace().collect();
-    // The sixteenth and seventeenth field of the file, in ticks of 10 ms; the first two precede the parenthesis.
+    // The sixteenth and seventeenth field of the file, in ticks of 10 ms; the first two fields end at the parenthesis.
     let ticks = |at: usize| fields.get(at).and_then(|field| field.parse::<f64>().ok());
     Ok((ticks(13).context("no time")? + ticks(14).context("no time")?) / 100.0)
 }

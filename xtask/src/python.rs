@@ -105,7 +105,7 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     if installed(&python, "pytest-xdist") {
         tests.args(["-n", "2", "--dist", "loadfile"]);
     }
-    // The tests of the site build it, with its notebooks, where `site` would build it.
+    // The tests of the site build the site with its notebooks, in the same folder as the task `site`.
     tests.env("BARRELSTACK_COMMAND", program(root)).env("BARRELSTACK_SITE", target(root));
     tests.env("MPLBACKEND", "Agg").current_dir(root);
     if what != Some("heavy") {
@@ -140,8 +140,8 @@ pub(crate) fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
     Ok(python)
 }
 
-/// Returns the Python interpreter of the environment, in which the present package is installed;
-/// `None` if maturin cannot be installed.
+/// Installs the package, as built from the sources, into the virtual environment. Returns the Python
+/// interpreter of the environment; `None` if maturin cannot be installed.
 ///
 /// The environment is kept between runs.
 fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {

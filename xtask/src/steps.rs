@@ -165,10 +165,10 @@ pub(crate) fn semver(revision: Option<&str>) -> anyhow::Result<()> {
     bail!("the interfaces differ from those of {baseline}: raise the version, or undo the change")
 }
 
-/// Runs tests of unsafe code under Miri, on any machine for x86-64: the choice of a vector unit, in
-/// `crates/dynamics/src/lanes/mod.rs`, and the operations of AVX2.
+/// Runs tests of unsafe code under Miri: the choice of a vector unit in `crates/dynamics/src/lanes/mod.rs`, and the
+/// AVX2 operations. Miri interprets code for x86-64 on any machine.
 ///
-/// The other unsafe code calls the loader, Python and the browser, which Miri does not have.
+/// The other unsafe code calls the loader, Python and the browser, which Miri does not support.
 pub(crate) fn miri() -> anyhow::Result<()> {
     for arguments in MIRI {
         let mut command = Command::new("cargo");
@@ -176,12 +176,12 @@ pub(crate) fn miri() -> anyhow::Result<()> {
             .args(["+nightly", "miri", "test", "--target", "x86_64-unknown-linux-gnu"])
             .args(arguments)
             .current_dir(root());
-        // The toolchain of this program must not reach the other one.
+        // These variables select the toolchain that runs this program; cargo must use the nightly toolchain instead.
         for name in ["CARGO", "RUSTC", "RUSTUP_TOOLCHAIN"] {
             command.env_remove(name);
         }
         command.env("MIRIFLAGS", "-Zmiri-disable-isolation");
-        // With AVX2, without which Miri would see none of the code of vector units.
+        // Without AVX2, Miri would not execute any code of vector units.
         command.env("RUSTFLAGS", "-C target-cpu=x86-64-v3");
         if !command.status().context("cannot start cargo")?.success() {
             bail!("Miri failed, or is missing: `rustup +nightly component add miri rust-src`");
@@ -300,7 +300,7 @@ mod tests {
     use super::root;
     use crate::lines::{entries, sources};
 
-    /// A file beside `tests/main.rs` that is not declared there as a module would not be run.
+    /// A test file must be declared as a module in `tests/main.rs`; otherwise its tests would not be run.
     #[test]
     #[allow(clippy::unwrap_used, reason = "a test fails by panic")]
     fn every_file_of_tests_is_run() {
@@ -334,8 +334,7 @@ mod tests {
         found
     }
 
-    /// A command of a document that names a package, or a test or an example of it, which does not exist, fails for its
-    /// reader.
+    /// Documents must not contain commands with packages, tests or examples that do not exist.
     #[test]
     #[allow(clippy::unwrap_used, reason = "a test fails by panic")]
     fn commands_of_documents_name_packages_and_targets_that_exist() {

@@ -22,7 +22,8 @@ const DEBIAN: &str = "/usr/bin/rustc";
 /// Build of the engine and its page.
 pub(crate) struct Build {
     root: PathBuf,
-    /// Linker for a standard library that is built from source; `None` if one is installed.
+    /// Linker for the build with a standard library from source; `None` if the standard library of the target is
+    /// installed.
     linker: Option<PathBuf>,
 }
 
@@ -48,8 +49,8 @@ impl Build {
 
     /// Builds the page in each language with its engine, and prints their sizes.
     ///
-    /// The engine of the page in English, which contains no catalog of a language, is built last and
-    /// stays as [`module`].
+    /// The English engine, which contains no translations, is built last, so it is the one that
+    /// remains at the path [`module`].
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.page("es", &["--features", "languages"], &spanish(&self.root))?;
         self.page("en", &[], &page(&self.root))

@@ -18,7 +18,7 @@ const GROUPS: [&[&str]; 5] = [
     &["way", "ways"],
 ];
 
-/// Fixed phrases whose words do not count; for example, a stack or a part that fails gives way.
+/// Fixed phrases whose words do not count, such as "gives way" for a part that fails.
 const PHRASES: [&str; 7] =
     ["by the way", "either way", "all the way", "half way", "give way", "gives way", "gave way"];
 

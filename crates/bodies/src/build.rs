@@ -138,7 +138,8 @@ fn simple(solid: &Solid) -> Option<(Surface, Option<Bulk>)> {
     })
 }
 
-/// Returns the contact nodes of a surface; `None` for a half-space or a dish, which are targets only.
+/// Returns the contact nodes of a surface; `None` for a half-space or a dish, which have no nodes: the nodes of other
+/// bodies touch them.
 fn touching(placed: &Placed<Spatial>) -> Option<Nodes<Spatial>> {
     let hull = match &placed.surface {
         Surface::HalfSpace | Surface::Dish(_) => return None,

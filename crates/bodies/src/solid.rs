@@ -84,8 +84,8 @@ table! {
     of *OF_PARTS, by type;
 }
 
-/// Reads and writes the solid of a part. The solid of a part has the same Rust type as the solid of a body, but a table
-/// of its own.
+/// Reads and writes the solid of a part of a compound. It has the same Rust type as the solid of a body, but its table,
+/// `PART_SOLID`, allows fewer shapes than `SOLID`.
 impl Held for Solid {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         read(reader.section(name)?)

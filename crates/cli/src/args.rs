@@ -34,7 +34,7 @@ pub(crate) struct Args {
     /// Command to run.
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Stop the program at a point of its work, given as WORK:THINGS:DONE, as Ctrl-C would; for tests.
+    /// Stop the program, as Ctrl-C would, when its work reaches the point WORK:THINGS:DONE; for tests.
     #[arg(long, global = true, hide = true, value_name = "POINT")]
     pub(crate) stop_at: Option<crate::interrupt::StopPoint>,
 }

@@ -29,8 +29,8 @@ static KEPT: Mutex<Option<String>> = Mutex::new(None);
 /// Folders that may contain unfinished files.
 static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Time that work has to react to a stop request. In the remainder of one second, the program prints which results are
-/// kept.
+/// Time that work has to react to a stop request. The program ends within one second; the rest of this second is left
+/// for the message that states which results are kept.
 const GRACE: Duration = Duration::from_millis(600);
 
 /// Time that stopped work has to print and write its finished results.
@@ -87,7 +87,7 @@ pub(crate) fn stop_at(point: Option<StopPoint>) {
 /// removed.
 pub(crate) fn watch(json: bool) {
     JSON.store(json, Ordering::Relaxed);
-    // On an error the system refuses a handler, so that Ctrl-C terminates the program as usual.
+    // An error means that the system refuses the handler; Ctrl-C then terminates the program as usual.
     drop(ctrlc::set_handler(request_stop));
 }
 

@@ -48,7 +48,7 @@ pub(crate) fn help(help: &clap::Error) -> anyhow::Result<()> {
     printed(help.print().and_then(|()| std::io::stdout().flush()))
 }
 
-/// Converts the outcome of printing a result.
+/// Returns an error if printing a result has failed, unless the reader has closed the pipe.
 fn printed(result: std::io::Result<()>) -> anyhow::Result<()> {
     const WHERE: &str = "cannot write to standard output";
     match result {
@@ -183,7 +183,8 @@ pub(crate) fn verdict(verdict: &Verdict) -> Vec<String> {
     std::iter::once(verdict.headline.clone()).chain(sentences).collect()
 }
 
-/// Returns the command that compares the remedy with the stack.
+/// Returns a sentence with the command that compares the stack without and with the remedy (the smallest sufficient
+/// change); `None` if there is no such command.
 pub(crate) fn side_by_side(summary: &AnySummary) -> Option<String> {
     let command = summary.remedy()?.comparison.as_ref()?;
     Some(format!("To compare the stack with and without the change: {command}"))
@@ -230,7 +231,7 @@ pub(crate) fn verification(found: &barrelstack::verify::Verification) -> anyhow:
     lines(["", "verification"].map(str::to_owned).into_iter().chain(aligned(&rows)))
 }
 
-/// Returns pairs of name and value as lines, with all values below each other.
+/// Returns pairs of name and value as lines, with the values aligned in a column.
 fn aligned(rows: &[(String, String)]) -> impl Iterator<Item = String> {
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0) + 2;
     rows.iter().map(move |(name, value)| format!("  {name:width$}{value}"))

@@ -198,7 +198,7 @@ pub(crate) struct Lines {
     last: Option<Mutex<LastLine>>,
 }
 
-/// State of the lines of a piece of work.
+/// State of the progress lines for one piece of work.
 struct LastLine {
     /// Time of the last line.
     last: Instant,
@@ -239,7 +239,8 @@ impl Lines {
     /// Reports the progress of work with a known total.
     pub(crate) fn at(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) {
         let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) else { return };
-        // A large decrease means the next part; a small one comes from another thread.
+        // If the amount decreases by more than half, the next part has started. A smaller decrease comes from another
+        // thread.
         let anew = of != line.of || done < 0.5 * line.done;
         (line.done, line.of) = (done, of);
         let (start, first, before) = match line.start {
@@ -380,7 +381,7 @@ mod tests {
             assert!(at <= 0.75 * all, "{at} of {all} s");
             wrong[1] += usize::from(!(0.5..=2.0).contains(&(estimate / all)));
         }
-        // Measured: 11 and 0 of 848.
+        // Measured: 11 of 848 estimates with simulated times are wrong by more than a factor of two, and none without.
         assert!(made > 500 && wrong[0] * 40 <= made && wrong[1] * 100 <= made, "{made} {wrong:?}");
     }
 }

@@ -34,7 +34,7 @@ pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
             && let Refusal::Missing(_) = read.refusal
         {
             return Some(
-                "`barrelstack motion convert` with --unit, --time-step or --sensitivity writes a file that states it",
+                "`barrelstack motion convert` with --unit, --time-step or --sensitivity writes a copy of the file that states the missing information",
             );
         }
         cause.downcast_ref().and_then(of_ground)

@@ -77,7 +77,8 @@ impl TableArgs {
     }
 }
 
-/// Returns the error message if `--xlsx` is given to a build that writes no workbooks, before any work is done.
+/// Returns an error message if `--xlsx` is among the arguments but this build cannot write workbooks. Called before any
+/// work is done.
 pub(crate) fn refusal(mut arguments: impl Iterator<Item = std::ffi::OsString>) -> Option<String> {
     let refused = !cfg!(feature = "xlsx") && arguments.any(|argument| argument == "--xlsx");
     refused.then(|| format!("--xlsx: {WITHOUT}"))
@@ -125,7 +126,8 @@ fn book(_: &[(&str, &str)]) -> anyhow::Result<Vec<u8>> {
     bail!("{WITHOUT}")
 }
 
-/// Returns the name, version and commit of the program that writes the workbook, as one labeled fact.
+/// Returns one pair of label and text for the sheet with the provenance: name, version and commit of the program that
+/// writes the workbook.
 fn facts() -> Vec<(String, String)> {
     let commit = env!("BARRELSTACK_COMMIT");
     let of = if commit.is_empty() { String::new() } else { format!(", commit {commit}") };

@@ -9,8 +9,8 @@ use serde_json::{Map, Value, json};
 
 use crate::one_line;
 
-/// The schemas of the objects of a document, by name; an object may contain objects of its own
-/// type.
+/// Schemas of all objects in a document, by the name of the object. An object may contain objects of
+/// its own type.
 pub type Objects = Map<String, Value>;
 
 /// A type that has a JSON Schema.
@@ -121,7 +121,7 @@ pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]
     if objects.contains_key(name) {
         return reference;
     }
-    // The name is reserved first, so that an object that contains itself refers to it.
+    // The name is reserved first, so that an object that contains objects of its own type can refer to its schema.
     objects.insert(name.to_owned(), Value::Null);
     let (mut properties, mut required) = (Map::new(), Vec::new());
     for field in fields.iter().filter(|field| field.how != Some("skip")) {

@@ -1,4 +1,4 @@
-//! Words: lists, headings and fields of CSV files.
+//! Text helpers: capitalization, lists of words, names with units, and CSV fields.
 
 /// Capitalizes the first letter of `words`.
 ///

@@ -52,7 +52,7 @@ mod _native {
 
     #[pymodule_export]
     const PERIODS: [f64; 22] = barrelstack_selection::PERIODS;
-    /// Gives pages the current date, which each page states.
+    /// Sets the current date, which every page states.
     #[pymodule_init]
     #[expect(clippy::unnecessary_wraps, reason = "PyO3 calls it with this type")]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -22,7 +22,7 @@ pub(crate) struct Page {
 }
 
 impl Page {
-    /// Creates a page with the numbers that the command prints as JSON.
+    /// Creates a page from its numbers, which become JSON text, and its document.
     pub(crate) fn of<N: serde::Serialize>(numbers: &N, document: Document) -> PyResult<Self> {
         let numbers = described::to_json(numbers).map_err(errors::general)?;
         Ok(Self { numbers, document })

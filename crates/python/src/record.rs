@@ -194,7 +194,7 @@ impl Record {
             "none" => Processing::none(),
             other => {
                 return Err(PyValueError::new_err(format!(
-                    "there is no chain \"{other}\"; there are \"default\", \"raw\", \"compact\" and \"none\""
+                    "chain: expected \"default\", \"raw\", \"compact\" or \"none\", found \"{other}\""
                 )));
             }
         };
@@ -205,7 +205,7 @@ impl Record {
             Some("whole") => MeanRemoval::Whole,
             Some(other) => {
                 return Err(PyValueError::new_err(format!(
-                    "there is no mean \"{other}\"; there are \"keep\", \"pre-event\" and \"whole\""
+                    "mean: expected \"keep\", \"pre-event\" or \"whole\", found \"{other}\""
                 )));
             }
         };
@@ -248,8 +248,9 @@ impl Record {
         Ok(record.into())
     }
 
-    /// Matches one component, or both horizontals over all directions; returns the matched record,
-    /// its largest misfit, and a description of the remaining misfits.
+    /// Matches the response spectrum of one component, or of both horizontals over all directions, to
+    /// a target. Returns the matched record, its largest misfit, and a description of the periods at
+    /// which it misses the target.
     #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python method")]
     fn matched(
         &self,

@@ -75,8 +75,8 @@ pub(crate) fn chosen<T: Copy, const N: usize>(
     Ok(all.into_iter().filter(requested).collect())
 }
 
-/// Writes parts of a rendering of a run that ends at a time (s); for each part, returns its folder
-/// or file and the number of files.
+/// Writes the requested parts of the rendering of a run; `end_time` (s) is the end of the run.
+/// Returns the folder or file of each part, and its number of files.
 pub(crate) fn rendered(
     py: Python<'_>,
     (folder, parts, overwrite): (&Path, &[String], bool),
@@ -92,8 +92,8 @@ pub(crate) fn rendered(
     Ok(written.into_iter().map(|one| (one.place, one.files)).collect())
 }
 
-/// Returns a page that contains only the player of a scene. The scene is reduced to a time interval
-/// (s) and to a number of frames per second.
+/// Returns a page that contains only an animation of a scene, which shows the time interval `between`
+/// (s) with `rate` frames per second of simulated time.
 pub(crate) fn animated(
     py: Python<'_>,
     (title, end_time): (&str, f64),
@@ -204,20 +204,22 @@ impl Run {
     }
 
     /// Returns the contact forces of a frame, one row each: `x` (m), `z` (m), and the components
-    /// (N) of the force on the contactor.
+    /// (N) of the force on the contactor, the body of the pair whose nodes touch the other body.
     fn frame_forces<'py>(&self, py: Python<'py>, frame: usize) -> PyResult<Rows<'py>> {
         let forces =
             self.run().recording.frames.forces.get(frame).ok_or_else(|| missing("frame"))?;
         rows(py, forces.iter().copied())
     }
 
-    /// Returns the bodies that have an envelope, each with `true` if its boundary is closed.
+    /// Returns the bodies with an envelope of contact stresses, each with `true` if its boundary is
+    /// closed.
     fn envelopes(&self) -> Vec<(String, bool)> {
         let name = |body: usize| self.run().assembly.parts[body].name.clone();
         self.run().stresses.envelopes.iter().map(|one| (name(one.body), one.closed)).collect()
     }
 
-    /// Returns the points of an envelope: `x` (m), `z` (m), coordinate (rad or m), length (m).
+    /// Returns the boundary points of an envelope: `x` (m), `z` (m), coordinate along the boundary
+    /// (rad or m), and length of the boundary (m) that the point represents.
     fn envelope_points<'py>(&self, py: Python<'py>, at: usize) -> PyResult<Rows<'py>> {
         let envelope = self.envelope(at)?;
         let points = envelope.points.iter().zip(&envelope.lengths);
@@ -257,7 +259,7 @@ impl Run {
         pdf_in(py, (paper, language), || report::answer_document(&self.answer))
     }
 
-    /// Returns a page that contains only the player.
+    /// Returns a page that contains only an animation of the run.
     fn animation(&self, py: Python<'_>, rate: f64, between: Option<[f64; 2]>) -> PyResult<String> {
         let run = self.run();
         let of_run = (run.scenario.title.as_str(), run.end_time);
@@ -270,8 +272,8 @@ impl Run {
         )
     }
 
-    /// Writes parts of a rendering; for each part, returns its folder or file and the number of
-    /// files.
+    /// Writes the requested parts of the rendering. Returns the folder or file of each part, and its
+    /// number of files.
     #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
     fn render(
         &self,

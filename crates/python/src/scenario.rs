@@ -243,7 +243,8 @@ fn run_choice(variant: Option<u32>, count: u32) -> PyResult<RunChoice> {
     }
 }
 
-/// Returns a scenario that states the given number of variants, and this number.
+/// Returns the scenario with the given number of variants (by default, its own number), and this
+/// number.
 pub(crate) fn with_variants(
     of: &barrelstack::Scenario,
     variants: Option<u32>,

@@ -46,7 +46,7 @@ macro_rules! each {
     };
 }
 
-/// Conversion of the vectors of a plane or of three dimensions from and to lists of numbers.
+/// Conversion of planar or three-dimensional vectors from and to lists of numbers.
 trait Listed: Space<Real = f64> {
     /// Names of the components of a vector, for error messages.
     const AXES: &'static str;
@@ -94,7 +94,7 @@ impl Listed for Spatial {
     }
 }
 
-/// Reads a force with its point and its moment; empty lists are zero.
+/// Reads a force with its point of action and its moment. An empty list stands for zero.
 fn applied<S: Listed>(
     body: usize,
     force: &[f64],

@@ -111,7 +111,7 @@ impl SpatialRun {
         pdf_in(py, (paper, language), || document(&self.answer))
     }
 
-    /// Returns a page that contains only the player.
+    /// Returns a page that contains only an animation of the run.
     fn animation(&self, py: Python<'_>, rate: f64, between: Option<[f64; 2]>) -> PyResult<String> {
         let run = &self.answer.run;
         let of_run = (run.scenario.title.as_str(), run.end_time);
@@ -119,8 +119,8 @@ impl SpatialRun {
         animated(py, of_run, (rate, between), across, |scene| player(run, scene))
     }
 
-    /// Writes parts of a rendering; for each part, returns its folder or file and the number of
-    /// files.
+    /// Writes the requested parts of the rendering. Returns the folder or file of each part, and its
+    /// number of files.
     #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
     fn render(
         &self,

@@ -176,8 +176,8 @@ pub(crate) fn decision(
     Page::of(&decision.to_document(), decision.document)
 }
 
-/// Exports the curves of the study in a folder, in formats of other programs. Returns the name and
-/// the text of each file, and a list of the parts that cannot be exported.
+/// Exports the fragility curves of the study that `folder` contains, in formats of other programs.
+/// Returns the name and the text of each file, and a list of the parts that cannot be exported.
 #[pyfunction]
 pub(crate) fn export(
     py: Python<'_>,

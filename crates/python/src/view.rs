@@ -1,4 +1,4 @@
-//! NumPy arrays that share the memory of numbers of the library.
+//! NumPy arrays: views, which share memory with the library, and new arrays of rows.
 
 use numpy::ndarray::ArrayView1;
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};

@@ -94,7 +94,7 @@ fn planar(kind: usize, name: &str, mass: f64, x: f64, z: f64, turn: f64) -> Body
     }
 }
 
-/// Returns a three-dimensional body by its kind: ball, tube, barrel, or block.
+/// Returns a three-dimensional body by its kind: ball, capsule (named "tube"), barrel, or block.
 fn solid(kind: usize, name: &str, mass: f64, place: Vec3, turn: Vec3) -> Body<Spatial> {
     let inertia = Vec3::new(0.03, 0.045, 0.045) * mass;
     let hull = match kind {

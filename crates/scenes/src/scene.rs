@@ -43,7 +43,7 @@ pub fn pose(x: f64, z: f64, orientation: f64) -> Pose<Planar> {
     Pose { position: Vec2::new(x, z), orientation }
 }
 
-/// Returns a free disc with one rolling node.
+/// Returns a free disc with one rolling node: the point of its rim that is deepest in the surface of the other body.
 ///
 /// `gyration_squared` is the squared radius of gyration k² (m²), which is ½ r² for a solid disc.
 pub fn disc(
@@ -140,7 +140,8 @@ pub fn coulomb(
     }
 }
 
-/// Returns the contact pair between the first node set of one body and the first surface of another, with interface 0.
+/// Returns the contact pair between the first node set of one body and the first surface of another. The pair has the
+/// contact laws of the interface with index 0.
 pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
     ContactPair {
         contactor,
@@ -217,8 +218,8 @@ impl<S: Space<Real = f64>> Scene<S> {
         Ok(self)
     }
 
-    /// Brings the scene to static equilibrium and returns the number of steps, the residual acceleration, and the
-    /// friction locked in.
+    /// Brings the scene to static equilibrium. Returns the number of steps, the residual acceleration, and a summary of
+    /// the friction forces at rest.
     ///
     /// # Errors
     /// If the bodies do not come to rest.

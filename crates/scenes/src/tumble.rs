@@ -4,7 +4,7 @@ use barrelstack_dynamics::{Body, Interface, NormalLaw, Planar, Twist, Vec2};
 
 use crate::scene::{coulomb, disc, finely_noded_block, floor, interface, pose};
 
-/// A small random number generator (splitmix64), which gives the same scene for a seed on every machine.
+/// A small random number generator (SplitMix64). The same seed gives the same scene on every machine.
 pub struct Random(pub u64);
 
 impl Random {
@@ -46,7 +46,8 @@ pub fn bodies(seed: u64, count: usize, spacing: f64) -> Vec<Body<Planar>> {
     bodies
 }
 
-/// Returns a contact law that suits the bodies of a heap: a speed-gap law with Coulomb friction.
+/// Returns contact laws that suit the bodies of a heap: a spring with damping on approach only
+/// ([`NormalLaw::SpeedGap`]), and Coulomb friction.
 ///
 /// `factor` multiplies the stiffnesses, and `damping` the damping constants.
 pub fn rough(factor: f64, damping: f64) -> Interface<Planar> {

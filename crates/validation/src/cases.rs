@@ -142,13 +142,13 @@ pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
         (Quantity::OverturningBorder | Quantity::UpliftBorder, Some("m/s")) => "m/s",
         (quantity, unit) => {
             return Err(refuse(&format!(
-                "expect.unit: a border needs \"g\" or \"m/s\", and a time or a displacement must \
+                "expect.unit: a boundary needs \"g\" or \"m/s\", and a time or a displacement must \
                  have no unit; found {unit:?} for {quantity:?}"
             )));
         }
     };
     if expect.quantity.beyond().is_some() && (expect.vary.is_none() || expect.between.is_none()) {
-        return Err(refuse(&"expect: a border needs `vary` and `between`"));
+        return Err(refuse(&"expect: a boundary needs `vary` and `between`"));
     }
     let scene = scene.to_owned();
     Ok(Problem {

@@ -1,4 +1,4 @@
-//! A row of dominoes as a room, and the theory of its wave.
+//! A row of dominoes, modeled as a room in which each domino is a stack, and the theoretical speed of its wave.
 
 use std::ops::ControlFlow;
 
@@ -97,14 +97,14 @@ fn theory_by(thickness: f64, spacing: f64, steps: u32) -> f64 {
     // Units: mass, gravity and height are one.
     let inertia = (1.0 + thickness * thickness) / 3.0;
     let height = |angle: f64| 0.5 * (cos(angle) + thickness * sin(angle));
-    // Angle of the domino behind a domino at a given angle, and the derivative of this angle.
+    // For a domino at `angle`: the angle of the next domino behind it, and the derivative with respect to `angle`.
     let behind = |angle: f64| {
         let reach = pitch * cos(angle) - thickness;
         let rate = 1.0 - pitch * sin(angle) / (1.0 - reach * reach).sqrt();
         (angle + asin(reach), rate)
     };
     let last = acos(thickness / pitch);
-    // J and V of an endless row whose front domino is at an angle.
+    // J and V of an endless row whose front domino is at the angle `front`.
     let row = |front: f64| {
         let (mut angle, mut rate) = (front, 1.0);
         let (mut sum, mut potential) = (0.0, 0.0);
@@ -122,7 +122,7 @@ fn theory_by(thickness: f64, spacing: f64, steps: u32) -> f64 {
     let end = asin(spacing);
     let (before, low) = row(end);
     let (after, high) = row(0.0);
-    // Energy after the hit, from the balance of one cycle: E + released = ½ I ω² J, E = ½ I ω² J²/(J + 1).
+    // Energy after the impact, from the balance of one cycle: E + released = ½ I ω² J, E = ½ I ω² J²/(J + 1).
     let released = high - low;
     let square = 2.0 * released * (before + 1.0) / (inertia * before);
     let start = 0.5 * inertia * square * before * before / (before + 1.0);

@@ -14,7 +14,7 @@ use crate::GRAVITY;
 pub struct Rocker {
     /// Slenderness angle α (rad): the arctangent of width divided by height.
     pub alpha: f64,
-    /// p = √(3g/4R) (rad/s).
+    /// Frequency parameter p = √(3g/4R) (rad/s), with the half-diagonal R.
     pub rate: f64,
     /// Ratio η of the angular velocities after and before an impact.
     pub restitution: f64,
@@ -154,7 +154,7 @@ impl Rocker {
             }
             if until >= pushed_until - 1e-9 * length {
                 let resting = side == 0.0;
-                // A block that moves away from rest still swings to the peak that its energy allows.
+                // A block whose rotation still grows has not yet reached its peak.
                 let settled = self.safe(theta, spin) && spin * theta <= 0.0;
                 if resting || settled {
                     return ride;

@@ -284,7 +284,7 @@ pub fn border(
     mut above: impl FnMut(f64) -> Result<bool, Failure>,
 ) -> Result<f64, Failure> {
     if above(low)? || !above(high)? {
-        return Err(Failure::Absent(format!("no border between {low} and {high}")));
+        return Err(Failure::Absent(format!("no boundary between {low} and {high}")));
     }
     for _ in 0..halvings {
         let middle = 0.5 * (low + high);

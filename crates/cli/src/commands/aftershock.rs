@@ -50,7 +50,8 @@ pub(crate) struct AftershockArgs {
     quiet: bool,
 }
 
-/// Runs a cellar through its motion and the aftershock; the first line answers the question.
+/// Runs a cellar through its motion and the aftershock. The first printed line states whether the stacks that survive
+/// the motion also survive the aftershock.
 pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
     let mut strengths = args.scale.clone();
     strengths.sort_by(f64::total_cmp);
@@ -119,7 +120,7 @@ fn residual(
 ) -> anyhow::Result<ExitCode> {
     if args.variants.variant.is_some() {
         bail!(
-            "--variant selects the run that is shown, but with several strengths no run is shown; leave it out"
+            "--variant selects the run that is shown, but with several strengths no run is shown; omit --variant"
         );
     }
     let (cellar, _) = super::cellar::selected(cellar, args.variants)?;

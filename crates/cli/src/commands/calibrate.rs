@@ -131,7 +131,7 @@ struct ChangeArgs {
 }
 
 impl ChangeArgs {
-    /// Returns the arguments that select the scenario with the name `name`, with the changes.
+    /// Returns the arguments that select the scenario `name` and apply the changes to it.
     fn of(&self, name: &str) -> ScenarioArgs {
         let (set, record) = (self.set.clone(), self.record.clone());
         ScenarioArgs { scenario: name.to_owned(), set, record }
@@ -243,7 +243,7 @@ struct CollapseArgs {
 }
 
 typed! {
-    /// A parameter by its name on the command line.
+    /// The parameters, by their names on the command line.
     enum Fitted of Parameter {
         K = Self::Stiffness,
         C = Self::Damping,
@@ -352,7 +352,7 @@ fn parameters(fit: &[Fitted]) -> anyhow::Result<Vec<Parameter>> {
     Ok(parameters)
 }
 
-/// Adds to an error of a calibration its position in the scenario, or the name of the scenario.
+/// Adds the position in the scenario, or the name of the scenario, to the error of a calibration.
 fn placed(error: CalibrateError, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     match error {
         CalibrateError::Run(failure) => super::placed(failure, scenario, args),
@@ -400,7 +400,7 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
     }
     anyhow::ensure!(
         args.statement.is_empty(),
-        "--statement chooses among the statements of a TOML file, and {} is a table of tests: leave it out",
+        "--statement chooses among the statements of a TOML file, and {} is a table of tests: omit --statement",
         args.file.display()
     );
     let observations = Observations::read(&Table::load(&args.file)?, &settings.errors)?;
@@ -429,7 +429,7 @@ fn fallen(
         args.changes.set.iter().any(|change| change.trim_start().starts_with("stack.levels"));
     anyhow::ensure!(
         !levels_set,
-        "--set stack.levels: the statements name the levels of the stacks; leave it out"
+        "--set stack.levels: the statements already state the numbers of levels; omit this change"
     );
     let heights = levels(&chosen)
         .into_iter()

@@ -1,4 +1,4 @@
-//! `barrelstack check` and `barrelstack run` for a cellar: the plan of the room, and the answer of all its variants.
+//! `barrelstack check` and `barrelstack run` for a cellar: the plan of the room, and the result of all variants.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -17,7 +17,7 @@ use crate::args::{CheckArgs, PartName, RunArgs, ScenarioArgs, VariantArgs};
 use crate::printer;
 use crate::progress::Progress;
 
-/// Prints the plan of a cellar, and what is wrong with it.
+/// Prints the plan of a cellar, and the problems found in the plan.
 pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCode> {
     if args.table {
         bail!("--table tabulates one stack; leave it out for a cellar");
@@ -79,7 +79,7 @@ fn is_new(path: &Path, option: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs a cellar, then prints and writes the result; the caller may supply a first sentence.
+/// Runs a cellar, then prints and writes the result. If `first` returns a sentence, it is printed before the result.
 pub(super) fn run(
     args: &RunArgs,
     cellar: Cellar,
@@ -91,7 +91,7 @@ pub(super) fn run(
             "--with-engine",
             "the program in that page simulates only single stacks",
         ),
-        (args.verify, "--verify", "runs are repeated for one stack only"),
+        (args.verify, "--verify", "only the run of a single stack can be repeated as a check"),
     ] {
         if given {
             bail!("{option}: {reason}; leave it out for a cellar");
@@ -168,12 +168,12 @@ fn run_part(args: &RunArgs, cellar: &Cellar, part: Part, keep: &Path) -> anyhow:
     crate::interrupt::finished();
     let Part { part, of: parts } = part;
     printer::lines([format!(
-        "part {part} of {parts}: {done} of {of} variants are in {}; with the same --keep and without --part, all parts are gathered",
+        "part {part} of {parts}: {done} of {of} variants are in {}; when all parts are done, the same command without --part gathers them",
         keep.display()
     )])?;
     if failed > 0 {
         printer::warning(&format!(
-            "{failed} of the {of} variants failed and are not kept: the run that gathers the parts computes them again, and does not count them"
+            "{failed} of the {of} variants failed, and their results are not kept: the command that gathers the parts runs these variants again, and does not count those that fail"
         ));
     }
     Ok(ExitCode::SUCCESS)
@@ -202,7 +202,7 @@ pub(super) fn selected(cellar: Cellar, args: VariantArgs) -> anyhow::Result<(Cel
     }
 }
 
-/// Adds to an error its position in the file.
+/// Adds the position in the file to an error.
 pub(super) fn placed(error: CellarFailure, cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Error {
     match error {
         CellarFailure::Plan(error) => error.into(),

@@ -40,7 +40,7 @@ pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let one = if scenario.is_spatial() { barrelstack_space::check } else { barrelstack::check };
     let found: Result<Vec<_>, _> = planes.iter().map(|plane| one(&plane.scenario)).collect();
     let mut found = found.map_err(placed)?;
-    // The fingerprint is that of the scenario as given, which both planes share.
+    // The findings of both planes have the same fingerprint: that of the scenario as given.
     let given = scenario.with_records(&mut from_disk).map_err(|error| placed(error.into()))?;
     for one in &mut found {
         one.scenario_hash = format!("{:016x}", given.fingerprint());

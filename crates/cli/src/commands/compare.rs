@@ -157,7 +157,7 @@ fn stacks(
         let (done, all) = (answers.len(), scenarios.len());
         printer::note(&format!("stopped; {done} of {all} runs are compared"));
     }
-    // If this last part is stopped, the runs shown so far are kept.
+    // The following runs make all sides show the same variant. If they are stopped, the runs shown so far are kept.
     let interrupt = Interrupt::listen();
     let answers = compare::aligned(answers, &mut |_| interrupt.flow())?;
     let sides = compare::sides(answers);

@@ -23,7 +23,7 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let placed = |error| super::placed(error, &scenario, &typed);
     let mut answer = super::run::answered(&scenario, selection, true).map_err(placed)?;
     if !args.no_remedy && !answer.is_stopped() {
-        // The search takes several times as long as the runs, so the page is already written without its result.
+        // The search takes several times as long as the runs, so a page without its result is written first.
         printer::note(&answer.headline());
         answer.files(args.language.of()).and_then(|files| folder.write_files(&files))?;
         let shows = format!("{} shows the result so far", folder.report().display());

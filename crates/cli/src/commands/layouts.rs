@@ -89,7 +89,8 @@ fn printed(args: &CompareArgs, found: &CellarComparison, folder: &Folder) -> any
 /// A cellar with its name in the comparison.
 type Named = (String, Cellar);
 
-/// Returns the layouts to run with their names, the given ones first, and the changes that are not run.
+/// Returns two lists: the layouts to run with their names, the given layouts first; and the usual changes that are not
+/// run, with reasons.
 fn layouts(args: &CompareArgs, given: Vec<Named>) -> anyhow::Result<(Vec<Named>, Vec<LeftOut>)> {
     let given: Vec<Named> = given
         .into_iter()

@@ -120,7 +120,7 @@ fn load_any(args: &ScenarioArgs) -> anyhow::Result<Loaded> {
         return Ok(Loaded::Scenario(Box::new(scenario)));
     }
     match Cellar::builtin(&args.scenario, &overrides) {
-        // A mistyped name may be meant as the name of a file; the library considers only names of built-in scenarios.
+        // The name may be a mistyped file name, but the library considers only names of built-in scenarios.
         Err(error) if built_in(&args.scenario).is_none() => Err(no_such(&args.scenario, &error)),
         found => cellar(found),
     }
@@ -143,7 +143,7 @@ fn status(broken: bool) -> ExitCode {
     if broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
-/// Adds to an error of a run its position in the scenario, or the name of the scenario. An error of a record that is
+/// Adds the position in the scenario, or the name of the scenario, to the error of a run. An error in a record that is
 /// given on the command line has no position in the scenario.
 fn placed(error: RunFailure, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     if args.record.is_some()

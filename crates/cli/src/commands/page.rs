@@ -30,7 +30,7 @@ pub(super) struct PageArgs {
 }
 
 impl PageArgs {
-    /// Checks the folder, and sets the message for a program that is stopped: finished results are kept in the folder.
+    /// Checks that the folder is writable, and sets the message that is printed if the program is stopped.
     pub(super) fn begin(&self, out: &Path) -> anyhow::Result<(RunOptions, Progress)> {
         writable(out)?;
         keeps(format!(
@@ -66,7 +66,8 @@ impl PageArgs {
     }
 }
 
-/// Adds to an error the option that caused it, because the user did not write the studies that the page presents.
+/// Prefixes an error with the command-line option that caused the error. A position in a study file would not help,
+/// because the command generates the studies.
 pub(super) fn of_option(error: StudyError, motions: &str, out: &Path) -> anyhow::Error {
     let option = match error {
         StudyError::Stopped => return Stopped.into(),

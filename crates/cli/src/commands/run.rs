@@ -144,7 +144,7 @@ pub(super) fn answered(
     Ok(answer)
 }
 
-/// Searches for a remedy with a progress bar; Ctrl-C stops the search.
+/// Searches for the smallest change that keeps the stack up (the remedy), with a progress bar; Ctrl-C stops the search.
 pub(super) fn remedied(
     answer: &mut AnyAnswer,
     command: &Command<'_>,

@@ -29,7 +29,7 @@ pub(crate) struct SchemaArgs {
     dictionary: bool,
 }
 
-/// A document, with the command that prints the document and with its schema.
+/// A document, the command that prints the document, and the schema of the document.
 struct Known {
     name: &'static str,
     of: &'static str,

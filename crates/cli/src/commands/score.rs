@@ -101,7 +101,7 @@ fn table(found: &League) -> Vec<String> {
     lines
 }
 
-/// Returns the table as text.
+/// Returns the verdict and the tables of the sheet as text.
 fn lines(sheet: &Sheet) -> Vec<String> {
     let mut lines = printer::verdict(&sheet.document.verdict);
     let velocities = &sheet.protocol.velocities;

@@ -194,7 +194,7 @@ fn load(study: &str) -> Result<Study, StudyError> {
 }
 
 fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    // The argument parser requires both.
+    // The argument parser already requires a study and a folder.
     let (Some(study), Some(out)) = (&args.study, &args.out) else {
         anyhow::bail!("name a study and a folder: barrelstack study STUDY --out DIR");
     };

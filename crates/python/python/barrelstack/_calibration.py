@@ -140,7 +140,7 @@ class Calibration(Page):
         Raises
         ------
         Error
-            When a column or a row is missing, or a rebound does not fit its drop.
+            When a column or a row is missing, or a rebound is higher than its drop.
         ValueError
             When only one of mass and stiffness is given.
         """

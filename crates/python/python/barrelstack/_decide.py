@@ -153,7 +153,7 @@ def heights(
     rack, barrel
         Names from the catalog.
     records
-        Files of additional motions, such as that of your own site.
+        Files of additional motions, such as records from your own site.
     synthetic
         Number of synthetic motions in addition to the bundled record.
     seed
@@ -239,7 +239,7 @@ class Protections(Page):
         Parameters
         ----------
         name
-            Its name in the table.
+            Name of the protection in the table.
 
         Returns
         -------
@@ -272,7 +272,7 @@ def protect(
     seed: int = 1,
     progress: Progress = None,
 ) -> Protections:
-    """Ranks protections of a stack by benefit and cost: fewer levels, other racks, devices, single and in pairs.
+    """Ranks protections of a stack by benefit and cost: fewer levels, other racks, devices, and pairs of these.
 
     Parameters
     ----------
@@ -292,8 +292,8 @@ def protect(
     count
         Number of motions per round, if no motions are given.
     rounds
-        Number of rounds: the first round computes all protections, each later round only the better half of the round
-        before.
+        Number of rounds: the first round evaluates all protections, and each further round evaluates the better half of
+        those in the previous round.
     budget
         Upper limit of the cost of a protection for a stack (US$).
     seed

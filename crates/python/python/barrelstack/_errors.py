@@ -42,7 +42,7 @@ __all__ = [
     "StudyError",
 ]
 
-#: Methods with a leading underscore that users call through a notation, and that are guarded too.
+#: Special methods that users call by creating an object, by an index or by an attribute; they are guarded, too.
 GUARDED = ("__init__", "__getitem__", "__getattr__")
 
 #: The folder of the package.
@@ -287,7 +287,7 @@ def guard(module: dict[str, Any], names: list[str]) -> None:
             module[name] = _guard(thing)
             setattr(sys.modules[thing.__module__], name, module[name])
         elif inspect.isclass(thing):
-            # Public methods may be those of a private class.
+            # Public methods may be inherited from a private class.
             owners += [one for one in thing.__mro__ if one.__module__.startswith("barrelstack.") and one not in owners]
     for owner in owners:
         for member, value in list(vars(owner).items()):

@@ -24,7 +24,7 @@ class Kept:
     answers
         Names of functions without arguments.
     rows
-        Names of functions of an index, each with the number of indices.
+        Names of functions whose argument is an index, each with the number of indices.
     """
 
     def __init__(

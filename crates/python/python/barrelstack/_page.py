@@ -48,7 +48,7 @@ class Page(Reported[_native.Page]):
 
     @cached_property
     def document(self) -> Any:
-        """All numbers, as the command prints them with ``--json``; SI units."""
+        """All numbers, as the command that writes this page prints them with ``--json``; SI units."""
         return json.loads(self._native.numbers)
 
     @property

@@ -189,7 +189,7 @@ class Pictured(Reported[NativeRun]):
         folder
             The output folder.
         *parts
-            Parts to write, among ``"figures"`` (SVG and the formats, each with its numbers), ``"report"`` (PDF),
+            Parts to write, among ``"figures"`` (SVG and ``formats``, with their numbers as CSV), ``"report"`` (PDF),
             ``"animation"`` (GIF and animated PNG), ``"frames"`` (numbered pictures) and ``"paraview"``; all of them by
             default.
         formats

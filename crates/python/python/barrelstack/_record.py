@@ -96,8 +96,8 @@ class Record:
         ----------
         source
             A path, the bytes of a file, or several paths whose components form one record. Archives of
-            ``numpy.savez(file, acceleration=…, dt=0.01)`` are accepted too; the name of an array may end in that of the
-            component (``acceleration_UP``).
+            ``numpy.savez(file, acceleration=…, dt=0.01)`` are accepted too; the name of an array may end with the
+            name of its component (``acceleration_UP``).
         unit
             Unit of acceleration for files that state none: ``"g"``, ``"m/s2"``, ``"cm/s2"``, ``"gal"``.
         time_step
@@ -478,9 +478,9 @@ class Record:
         Parameters
         ----------
         chain
-            Base chain: ``"default"`` (the chain for the processing stage of the record), ``"raw"`` (mean, taper,
-            high-pass at 0.1 Hz, ends closed), ``"compact"`` (the same without pads), or ``"none"``. The other arguments
-            replace its settings.
+            Base chain: ``"default"`` (the chain for the processing stage of the record), ``"raw"`` (remove the mean,
+            taper, high-pass at 0.1 Hz, bring the final velocity and displacement to zero), ``"compact"`` (the same
+            without pads), or ``"none"``. The other arguments replace its settings.
         mean
             ``"keep"``, ``"pre-event"`` or ``"whole"``.
         detrend

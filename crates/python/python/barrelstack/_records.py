@@ -235,13 +235,13 @@ def select(
     given: tuple[float, float] | None = None
     if isinstance(target, str):
         if at is not None:
-            raise ValueError("a code spectrum has no spread, so it cannot be made conditional: leave out at")
+            raise ValueError("a code spectrum has no spread, so it cannot be made conditional: omit the argument at")
         periods, wanted = np.array(PERIODS), target
     else:
         periods, median, deviation = (np.ascontiguousarray(one, dtype=np.float64) for one in target)
         wanted = (median.tolist(), deviation.tolist())
         if (at is None) == (level is not None or epsilon is not None) or (level is not None and epsilon is not None):
-            raise ValueError("a condition needs a period, at, and either level or epsilon")
+            raise ValueError("expected the period at together with either level or epsilon")
         if at is not None:
             given = (float(at), _given(periods, median, deviation, at, level, epsilon))
     candidates: list[tuple[str, list[float], str]] = []

@@ -167,10 +167,10 @@ class Histories(Columns, Mapping[str, "NDArray[np.float64]"]):
 
 
 class Force(NamedTuple):
-    """The force between two bodies of a stack, on the upper one.
+    """The contact force between two bodies of a stack, as it acts on the upper body.
 
-    If neither body rests on the other, the force is that on the body named first. Largest forces are those with the
-    largest magnitude in any step, with their sign.
+    If neither body rests on the other, the force acts on the body that is named first. Largest forces are those with
+    the largest magnitude in any step, with their sign.
 
     Examples
     --------
@@ -342,7 +342,7 @@ class Run(Pictured[_native.Run]):
         Returns
         -------
         ndarray, shape (arrows, 4)
-            Position x, z (m) and force x, z (N) on the contactor.
+            Position x, z (m), and force x, z (N) on the contactor: the body of the pair whose nodes touch the other.
         """
         return self._native.frame_forces(frame)
 

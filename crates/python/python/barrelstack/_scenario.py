@@ -31,7 +31,7 @@ def _schema(of: str) -> dict[str, Any]:
 
 
 def _is_file(name: str) -> bool:
-    """Returns True for a path; a name without a dot or a separator that is not a file is a built-in scenario."""
+    """Returns True if a name is a path. If no such file exists, a name without a dot or a separator is built in."""
     return os.path.isfile(name) or any(sign in name for sign in "./\\")
 
 
@@ -324,7 +324,7 @@ class Scenario:
         Returns
         -------
         Record or None
-            ``H1``, positive along x, and ``UP``; None for ground at rest.
+            A record with the components ``H1`` (positive along x) and ``UP``; None if the ground is at rest.
 
         Raises
         ------
@@ -372,7 +372,7 @@ class Scenario:
         variant
             The variant to show, 0 for the nominal stack; by default the most typical one.
         remedy
-            Whether to search for a change with which the stack stands, as the command does.
+            Whether to search for a change that keeps the stack up, as ``barrelstack run`` does.
         verify
             Whether to repeat the run, as a check, with half the time step and with barrels displaced by a nanometer.
 
@@ -437,7 +437,7 @@ class Scenario:
         variant
             The variant to show, 0 for the nominal stack; by default the most typical one.
         remedy
-            Whether to search for a change with which the stack stands, as the command does.
+            Whether to search for a change that keeps the stack up, as ``barrelstack run`` does.
         verify
             Whether to repeat the run, as a check, with half the time step and with barrels displaced by a nanometer.
 

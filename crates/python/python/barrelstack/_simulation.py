@@ -150,7 +150,7 @@ class Energy(NamedTuple):
 
 
 def _numbers(values: ArrayLike | None) -> list[float]:
-    """Returns the components of a vector; none for None."""
+    """Returns the components of a vector; an empty list for None."""
     return [] if values is None else np.atleast_1d(np.asarray(values, dtype=float)).tolist()
 
 
@@ -205,7 +205,7 @@ class Simulation:
     @property
     def ending(self) -> str | None:
         """Reason for the end of the run: ``rest``, ``after-collapse``, ``duration``, ``patience`` or ``broken``; None while
-        it goes on."""
+        the run continues."""
         return self._native.ending
 
     @property

@@ -354,7 +354,7 @@ class Study:
         Parameters
         ----------
         folder
-            Folder for the results: new, empty, or with results of this study, which then continues.
+            Folder for the results: new, empty, or with results of this study, which is then continued.
         workers
             Number of threads; by default, one per core. Results do not depend on the number of threads.
         progress
@@ -540,7 +540,7 @@ class Study:
 
     @staticmethod
     def ida(folder: str | os.PathLike[str], demand: str = "top_drift_ratio") -> Hunts:
-        """Returns the incremental dynamic analysis of a folder.
+        """Returns the incremental dynamic analysis from the study in a folder.
 
         Parameters
         ----------

@@ -52,7 +52,7 @@ class Columns:
     def __class__(self) -> type:
         return dict
 
-    #: Column that numbers the rows; None if they have no such column.
+    #: Name of the index column, such as ``time``; None if there is no such column.
     _index: str | None = None
 
     def _arrays(self) -> list[tuple[Column, NDArray[Any]]]:

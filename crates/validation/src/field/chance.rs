@@ -8,7 +8,8 @@ use super::cases::{FieldCase, FieldCases, UNKNOWNS};
 /// and factor on the motion.
 pub const MEDIANS: [f64; UNKNOWNS] = [0.30, 0.50, 3.0, 1.0];
 
-/// Units in which the natural logarithms of the unknowns enter the polynomial.
+/// Scales of the natural logarithms of the unknowns relative to [`MEDIANS`]. The polynomial contains these logarithms
+/// divided by twice the scales.
 const UNITS: [f64; UNKNOWNS] = [0.35, 0.2, 0.6, 0.25];
 
 /// Standard deviations of the normal priors of the coefficients: constant, linear, and all others.
@@ -237,7 +238,7 @@ mod tests {
             let point = Point { unknowns: [friction, 0.5, 3.0, 1.0], azimuth: 0.0 };
             let found = fit.of(levels, &point, false, None);
             let expected = truth(levels, friction);
-            // The measured difference is 0.02 at most.
+            // In these cases, the largest difference is 0.02.
             assert!((found - expected).abs() < 0.05, "{levels} {friction}: {found} {expected}");
         }
     }

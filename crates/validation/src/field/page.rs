@@ -141,8 +141,8 @@ fn observed(text: &mut String, quake: &Earthquake) {
     }
 }
 
-/// Returns the words for the view of a study: across the barrels, along the barrels, or in three dimensions ("in
-/// space").
+/// Returns the words for the model of a study: "across" or "along" for the planes across and along the barrels, "in
+/// space" for three dimensions.
 fn view(study: &str) -> &'static str {
     match study.rsplit('-').next() {
         Some("across") => "across",

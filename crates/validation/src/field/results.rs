@@ -1,4 +1,5 @@
-//! Numbers of the hindcasts: shares by height and view, posteriors, and likelihoods along each unknown.
+//! Numbers of the hindcasts: shares of stacks that fall, by study and height; posteriors of the unknowns; likelihoods
+//! of the statements as functions of each unknown.
 
 use std::fmt::Write as _;
 
@@ -42,11 +43,11 @@ pub struct Share {
     pub fitted: f64,
     /// Probability of a fall with the medians of the catalog, under the unscaled record.
     pub medians: f64,
-    /// Probability of a fall, over the prior.
+    /// Mean and range of the probability of a fall over the prior.
     pub prior: Range,
-    /// Probability of a fall, over the posterior given the statement "half of the barrels".
+    /// Mean and range of the probability of a fall over the posterior, given the statement "half of the barrels".
     pub posterior: Range,
-    /// Mean share of barrels that fell, over the stacks that fell.
+    /// Mean share of fallen barrels in the stacks that fell.
     pub fallen: f64,
 }
 
@@ -70,7 +71,7 @@ pub struct Bin {
     pub given: String,
     /// Index of the unknown.
     pub unknown: usize,
-    /// The bin.
+    /// Lower and upper edge of the bin.
     pub range: [f64; 2],
     /// Mean likelihood, 1 at most.
     pub likelihood: f64,
@@ -83,7 +84,7 @@ pub struct Results {
     pub shares: Vec<Share>,
     /// Posteriors, the prior first.
     pub posteriors: Vec<Posterior>,
-    /// Likelihoods along each unknown.
+    /// Mean likelihood of each statement, in each bin of each unknown.
     pub bins: Vec<Bin>,
     /// For each statement, its name and its predicted value, over the prior and over the posterior given the statement
     /// "half".
@@ -344,7 +345,8 @@ fn posterior(given: &str, draws: &[[f64; UNKNOWNS]], weights: &[f64]) -> Posteri
     }
 }
 
-/// Returns the edges of bins that divide the range of the barrel–rack friction in equal ratios.
+/// Returns the edges of `count` bins that cover the range of the barrel–rack friction. The ratio of successive edges is
+/// constant.
 fn bins(count: usize) -> Vec<f64> {
     let [low, high] = weigh::RANGES[0];
     (0..=count).map(|at| low * libm::pow(high / low, at as f64 / count as f64)).collect()

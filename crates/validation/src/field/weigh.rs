@@ -10,7 +10,7 @@ use barrelstack_calibration::shares::{Kind, Likelihood, Statement};
 /// of a scenario. The standard deviation for the fourth unknown, the factor on the motion, depends on the earthquake.
 const SPREADS: [f64; 3] = [0.35, 0.2, 0.6];
 
-/// Ranges of the simulations, at which the prior is cut off.
+/// Smallest and largest simulated value of each unknown. The prior is truncated to these ranges.
 pub(super) const RANGES: [[f64; 2]; UNKNOWNS] =
     [[0.12, 0.75], [0.30, 0.85], [0.7, 13.0], [0.5, 2.0]];
 
@@ -24,7 +24,7 @@ pub(super) struct Fitted<'a> {
     pub(super) cases: &'a FieldCases,
     /// Fitted probability of a fall.
     pub(super) chance: Chance,
-    /// Mean share of barrels that fell, over the stacks that fell, for heights of 2 to 6 levels.
+    /// Mean share of fallen barrels in the stacks that fell, for each height from 2 to 6 levels.
     pub(super) fallen: [f64; 5],
     in_space: bool,
 }
@@ -85,7 +85,7 @@ pub(super) fn prior(motion: f64, seed: u64) -> Vec<[f64; UNKNOWNS]> {
         .collect()
 }
 
-/// Returns, for each draw of the unknowns, the share (of barrels or of stacks) to which a statement refers. For each
+/// Predicts, for each draw of the unknowns, the share (of barrels or of stacks) that a statement states. For each
 /// draw of the unknowns, an azimuth, a mixture of heights (all mixtures are equally probable) and coefficients of the
 /// fit are also drawn.
 pub(super) fn predicted(

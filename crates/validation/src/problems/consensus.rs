@@ -63,7 +63,8 @@ fn first_fall() -> Problem {
         })
 }
 
-/// Creates the problem of the version *bodies*, read from a file that describes each body and the nodes of the racks.
+/// Creates the problem of the scene that is built from individual bodies. A file describes each body and the nodes of
+/// the racks.
 fn written() -> Problem {
     Problem {
         id: "consensus/a-file".into(),
@@ -175,8 +176,8 @@ fn is_rack(body: usize) -> bool {
     body > 0 && body % 3 == 1
 }
 
-/// For the version *bodies*, returns the times (s) at which the first barrel has dropped by each of the two distances
-/// in [`FALLS`].
+/// Runs the scene that is built from individual bodies. Returns, for each of the two distances in [`FALLS`], the time
+/// (s) at which the first barrel has dropped by this distance.
 fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     let step = 1e-4;
     let mut scene = Scene::of(eight_barrels(degrees)?).settled(1e-9)?;
@@ -198,7 +199,7 @@ fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     Ok(fallen)
 }
 
-/// Returns the time (s) at which the first barrel of the version *scenario* falls.
+/// Runs the most similar stack that a scenario can describe. Returns the time (s) at which the first barrel falls.
 fn scenario(degrees: f64, end: f64) -> Result<Option<f64>, Failure> {
     let text = format!(
         r#"

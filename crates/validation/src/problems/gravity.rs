@@ -20,7 +20,8 @@ const SOURCE: &str = "statics";
 const MASS: f64 = 40.0;
 const STIFFNESS: f64 = 1e7;
 
-/// Distance (m) of the nodes of a brick from its ends; it allows equal bricks to stand on each other.
+/// Distance (m) from the ends of a brick to its nodes. Without this distance, the nodes of a brick would lie exactly at
+/// the ends of an equal brick below.
 pub(super) const INSET: f64 = 0.02;
 
 fn firm() -> NormalLaw {
@@ -155,7 +156,7 @@ fn rest() -> Problem {
     })
 }
 
-/// Returns `true` if a stack of `n` bricks with harmonic overhangs, multiplied by the fraction `share`, stands.
+/// Returns `true` if a stack of `n` bricks stands whose overhangs are `share` times the harmonic overhangs.
 fn stands(n: u32, share: f64) -> Result<bool, Failure> {
     let (length, height) = (1.0, 0.2);
     // The lowest brick lies on a table that ends at x = 0; brick i from the top overhangs the brick below by L/2i.

@@ -292,14 +292,15 @@ fn flight() -> Problem {
     })
 }
 
-/// Returns the block of the ensembles, in the form used by the independent integrator of this crate.
+/// Returns the block of the problems with ensembles of records, in the form that the independent integrator of this
+/// crate uses.
 fn rigid() -> Rocker {
     let alpha = 0.25;
     let restitution = theory::housner_restitution(alpha);
     Rocker { alpha, rate: theory::rocking_rate(1.0), restitution, slender: false }
 }
 
-/// Creates the problem that verifies the rigid-block integrator, which the ensembles use, over an interval without
+/// Creates the problem that verifies the independent rigid-block integrator of this crate over an interval without
 /// impact.
 fn own_lean() -> Problem {
     let (omega, push, until) = (6.0, 0.3, 1.0);

@@ -24,7 +24,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Returns a room under the motion of its first stack.
+/// Returns a room that is shaken by the motion of its first stack's scenario.
 fn room(stacks: Vec<Placed>) -> Result<Room, Failure> {
     let ground = Ground::of_spec(&stacks[0].scenario.motion, 1.0).map_err(absent)?;
     Ok(Room { stacks, obstacles: Vec::new(), ground })
@@ -112,7 +112,7 @@ fn pounded() -> Result<RoomRun, Failure> {
     run(&room, 1)
 }
 
-/// Creates the problems of two equal blocks, A and B, that strike each other across a gap, and of a wall.
+/// Creates the problems of two equal blocks, A and B, and a wall: A strikes B across a gap; B then strikes the wall.
 ///
 /// Since the masses are equal and the contacts are elastic, the blocks exchange their velocities. A moves to B and
 /// stops; B moves to the wall, returns to A and stops; A then moves back at the initial speed. The impulse of the wall
@@ -272,8 +272,8 @@ fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
     numbers.into_iter().reduce(larger).unwrap_or(f64::NAN)
 }
 
-/// Returns the largest difference from the independent integration at any step, divided by the largest force on the
-/// wall.
+/// Compares the force on the wall with that of the independent integration. Returns the largest difference at any step,
+/// divided by the largest force on the wall.
 fn apart(run: &RoomRun) -> Option<f64> {
     let wall = run.obstacles.first()?;
     let exact = history(wall.history.iter().map(|(time, _)| *time));
@@ -406,7 +406,7 @@ fn glancing(turn: f64, own: f64, side: f64) -> Result<Room, Failure> {
         azimuth: turn + own,
         ..Placed::new(name, scenario, place(x, y))
     };
-    // The second block is beside the course of the first, so that both turn.
+    // The center of the second block lies beside the path of the first, so the impact turns both blocks.
     let mut room = room(vec![
         at("A", block(side * BLOCK[1])?, [0.0, 0.0], 0.0),
         at("B", block(0.0)?, [side * 0.45, 0.1], own),

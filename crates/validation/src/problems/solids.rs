@@ -129,7 +129,7 @@ fn default_step() -> Problem {
     })
 }
 
-/// Creates a body with exact contacts, without nodes.
+/// Creates a body whose contacts are computed from its exact shape instead of from individual nodes.
 fn solid(name: &str, shape: Shape, pose: Pose<Planar>) -> Body<Planar> {
     let rounds = Nodes::Rounds(shape.rounds(1.0));
     Body {
@@ -168,8 +168,8 @@ fn rail_and_barrel() -> [Shape; 2] {
     }
 }
 
-/// Creates a model of two bodies, each of which is tested as the contactor of the other. The lower body is at the
-/// origin.
+/// Creates a model of two bodies with two contact pairs, so that each body is the contactor in one pair and the target
+/// in the other. The lower body is at the origin.
 fn two(
     [below, above]: [Shape; 2],
     upper: Pose<Planar>,
@@ -292,13 +292,14 @@ fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
         let (mut worst, mut count, mut several) = (0.0_f64, 0, 0);
         let mut at = [0.0; 3];
         while count < wanted {
-            // A sequence that fills the space of poses evenly.
+            // A low-discrepancy sequence, which samples the poses evenly.
             for (value, step) in at.iter_mut().zip([0.819_172_5, 0.671_043_6, 0.549_700_5]) {
                 *value = (*value + step) % 1.0;
             }
             let pose = [1.8 * at[0] - 0.9, 1.2 * at[1] - 0.6, 2.0 * PI * at[2]];
             let (_, force, deepest, contacts) = energy_and_force(pose);
-            // At greater depths the cores of the bodies may overlap, for which the contact is not designed.
+            // At greater depths the cores of the bodies (the shapes without their rounded edges) may overlap; the
+            // contact is not designed for this.
             if deepest == 0.0 || deepest > 0.015 {
                 continue;
             }

@@ -98,7 +98,8 @@ pub(super) enum Chain {
 }
 
 impl Chain {
-    /// Returns the processing of the chain for a record at a stage.
+    /// Returns the processing steps of this chain for a record; `stage` is the processing stage that the
+    /// file states.
     pub(super) fn of(self, stage: Stage) -> Processing {
         match (self, stage) {
             (Self::Default, Stage::Raw) | (Self::Compact, _) => Processing::compact(),
@@ -226,7 +227,7 @@ impl Input {
         }
         first.map_err(|error| match damaged {
             Some(why) => with_option(error)
-                .context(format!("{why:#}; no file beside it states a sensitivity")),
+                .context(format!("{why:#}; no other file in its folder states a sensitivity")),
             None => with_option(error),
         })
     }
@@ -266,7 +267,7 @@ impl Choice {
             record.stage
         );
         if record.format == "barrelstack" {
-            // The file states its own processing history.
+            // A file in the program's own format already states its processing steps.
             for note in &mut chosen.notes {
                 if let Some(step) = note.strip_prefix("processing: ") {
                     *note = step.to_owned();
@@ -415,7 +416,7 @@ fn instruments_of_file(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     Ok(found)
 }
 
-/// Reads the channels of an XML file that have a sensitivity.
+/// Reads an XML file, and returns the channels for which the file states a sensitivity.
 fn read_station_xml(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     let text = bytes(path)?;
     station_xml(&String::from_utf8_lossy(&text)).with_context(|| path.display().to_string())

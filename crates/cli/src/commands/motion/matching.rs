@@ -200,8 +200,8 @@ impl Part {
     }
 }
 
-/// Returns the matched record and, if the record misses the target, a description of the periods at
-/// which it does.
+/// Returns the matched record and, if its spectrum misses the target, a description of the periods at
+/// which the spectrum misses.
 fn matched(
     args: &MatchArgs,
     before: &Record,
@@ -229,7 +229,7 @@ fn matched(
     Ok((after, (!missed.is_empty()).then(|| missed_in_words(&missed))))
 }
 
-/// Tabulates the spectra before and after matching and the target at some periods.
+/// Tabulates, at some periods, the target and the spectra before and after matching.
 fn comparison(
     part: &Part,
     [before, after]: [&Record; 2],

@@ -23,7 +23,7 @@ pub(super) struct Output {
     pub(super) overwrite: bool,
 }
 
-/// Formats that can be written for the records of folders.
+/// File formats in which the records of a folder can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Form {
     /// NumPy archive.

@@ -199,8 +199,8 @@ fn build_up(record: &Record) -> Plot {
     plot
 }
 
-/// Plots response spectra, over all directions if there are two horizontals, and the target, if a
-/// target is given.
+/// Plots response spectra and, if a target is given, the target. If there are two horizontals, the
+/// spectra over all directions are plotted, too.
 fn response(
     channels: &[(String, &Channel)],
     whole: Option<&Record>,

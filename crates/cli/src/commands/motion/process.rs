@@ -101,7 +101,7 @@ impl FromStr for Axes {
             ("vmax", _) => Ok(Self::Fastest),
             (_, Some(strike)) if f64::is_finite(strike) => Ok(Self::Strike(strike)),
             _ => Err(
-                "expected strike: with degrees clockwise from north, such as strike:122, or vmax"
+                "expected vmax, or a strike in degrees clockwise from north, such as strike:122"
                     .to_owned(),
             ),
         }
@@ -133,9 +133,9 @@ typed! {
 typed! {
     /// Yes or no.
     enum YesOrNo of bool {
-        /// Do it.
+        /// Bring the final velocity and displacement to zero.
         Yes = true,
-        /// Do not do it.
+        /// Leave the final velocity and displacement as they are.
         No = false,
     }
 }

@@ -207,7 +207,7 @@ impl Source {
         source.velocity = quantity("--beta", &self.beta, Dimension::VELOCITY)? / 1000.0;
         let numbers = pair(&self.quality).ok_or_else(|| {
             anyhow!(
-                "--quality: `{}` is not a factor and an exponent such as 180,0.45",
+                "--quality: expected a factor and an exponent, such as 180,0.45, found `{}`",
                 self.quality
             )
         })?;
@@ -216,8 +216,8 @@ impl Source {
             let points: Option<Vec<(f64, f64)>> = text.split(';').map(pair).collect();
             source.path.amplification = SiteAmplification::Table(points.ok_or_else(|| {
                 anyhow!(
-                    "--site-amplification: `{text}` is not a list of frequencies and factors such as \
-                         0.1,1;1,1.5;10,2"
+                    "--site-amplification: expected a list of frequencies and factors, such as 0.1,1;1,1.5;10,2, found \
+                         `{text}`"
                 )
             })?);
         }

@@ -156,8 +156,8 @@ fn slurm(job: &Job, args: &EmitArgs) -> String {
         let last = limit.min(job.chunks - first) - 1;
         let _ = writeln!(text, "submit {first} {last} \"$@\"");
     }
-    // The job runs after the arrays end in any way: the collected table states which chunks are
-    // missing.
+    // The job runs after the arrays end, whether or not they succeed: the collected table states
+    // which chunks are missing.
     let _ = writeln!(
         text,
         "sbatch --parsable --cpus-per-task=1 --dependency=\"afterany$jobs\" \"$@\" <<'END'\n\

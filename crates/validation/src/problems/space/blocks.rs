@@ -66,7 +66,7 @@ fn shared(title: &str, name: &str, exact: Vec<f64>, feet: &[Vec3]) -> Vec<Proble
     exact.into_iter().enumerate().map(of).collect()
 }
 
-/// Creates the problem of a box that is pushed obliquely and tips over the weakest of its edges.
+/// Creates the problem of a box that is pushed obliquely and tips over the edge that needs the smallest push.
 fn tips(degrees: f64, exact: f64) -> Problem {
     setting(
         format!("space-blocks/tips-{degrees}"),

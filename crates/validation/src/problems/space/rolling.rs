@@ -206,7 +206,7 @@ fn bounce() -> [Problem; 3] {
             let mut ball = ball(radius, 10.0, Vec3::new(0.0, 0.0, radius));
             ball.twist.linear = Vec3::new(3.0, 1.0, -2.0);
             ball.twist.angular = Vec3::new(0.0, 30.0, 0.0);
-            // The contact is so stiff that the penetration hardly changes the lever arm; the damping ratio is the same.
+            // The contact is so stiff that the penetration hardly changes the lever arm.
             let law = NormalLaw::SpeedGap { stiffness: 1e12, damping: 4e5 };
             // The slip is far above the velocity of regularization.
             let sliding = FrictionLaw::Regularized { coefficient: 0.05, velocity: 1e-6 };

@@ -16,8 +16,8 @@ pub(super) struct RecordData<'a> {
 }
 
 impl RecordData<'_> {
-    /// Returns the file of a horizontal component, counted from 0, and its channel in the file,
-    /// such as `#1` for the first.
+    /// Returns the file that contains the horizontal component with the index `horizontal`, and the
+    /// channel of the component in this file, such as `#1` for the first channel.
     ///
     /// `None` if several files have several channels each, because a file name then does not
     /// identify a channel.

@@ -74,7 +74,7 @@ impl Journal {
         let head = json!({ "barrelstack": version, "settings": settings, "columns": names });
         let file =
             system::open_to_change(&path).map_err(input::plain).with_context(|| cannot("write"))?;
-        // On file systems without locks, two commands cannot be kept apart.
+        // On file systems without locks, another command that writes to the same folder is not detected.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             let out = out.display();
             bail!("another command is working in {out}: wait for it, or give another folder");

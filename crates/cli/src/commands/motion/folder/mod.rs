@@ -113,7 +113,7 @@ pub(super) struct Worked {
 }
 
 impl Worked {
-    /// Wraps a record as read, to be measured after the default processing of a scenario.
+    /// Wraps a record as read. Before it is measured, the default processing of a scenario is applied.
     pub(super) fn as_read(record: Record) -> Self {
         let before = Chain::Default.of(record.stage);
         Self { record, before }
@@ -141,7 +141,7 @@ pub(super) struct Measurements {
 enum Done {
     /// The record is in the journal.
     Noted,
-    /// Refused files with reasons that may be temporary; the next command tries the record again.
+    /// Refused files with reasons that may be temporary; the next command processes the record again.
     Unsure(Vec<(String, String)>),
     /// The command was stopped before this record was finished.
     Stopped,
@@ -290,7 +290,7 @@ fn fingerprint_of(source: &Source) -> u64 {
 /// Reads, processes and measures one record.
 ///
 /// Files that cannot be read, and records that cannot be processed, are refused with the reason.
-/// Failures that may be due to the disk are not final; the next command tries these records again.
+/// Failures that may be due to the disk are not final; the next command processes these records again.
 fn entry(
     input: &Input,
     source: &Source,

@@ -13,7 +13,7 @@ use crate::store::store;
 pub(super) struct Set<'a> {
     pub(super) args: &'a SelectArgs,
     pub(super) table: &'a StudyTable,
-    /// Row in the table for each candidate.
+    /// For each candidate, its row in the table.
     pub(super) rows: &'a [usize],
     pub(super) selection: &'a Selection,
 }
