@@ -168,7 +168,9 @@ fn unreasonable_settings_are_refused() {
     let chain = Processing { low_pass: Some(1e-9), ..Processing::none() };
     let message = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
     assert!(
-        message.starts_with("low-pass corner (Hz): expected at least the reciprocal of the duration, 1")
+        message.starts_with(
+            "low-pass corner (Hz): expected at least the reciprocal of the duration, 1"
+        )
     );
     let chain = Processing { high_pass: Some(0.1), low_pass: Some(1.0), ..Processing::none() };
     let message = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
