@@ -24,13 +24,6 @@ struct Step {
     remedy: &'static str,
 }
 
-/// Options of cargo that select the packages of all release builds of `cargo xtask test`.
-///
-/// Cargo enables the features that all selected packages need, so that dependencies are compiled once for the program, for
-/// the hashes of results and for the writer of the page only if every build selects the same packages.
-pub(crate) const RELEASED: [&str; 3] =
-    ["--package=barrelstack", "--package=barrelstack-library", "--package=barrelstack-web"];
-
 /// The steps that need only the Rust toolchain, the quickest first.
 const STEPS: [Step; 5] = [
     Step {
@@ -63,7 +56,14 @@ const STEPS: [Step; 5] = [
         remedy: "see the failed tests above; they are listed again at the end of the step",
     },
     Step {
-        arguments: &["test", "--release", RELEASED[0], RELEASED[1], RELEASED[2], "--test", "bits"],
+        // With the package whose example writes the page of the engine, so that both builds share all features.
+        arguments: &[
+            "test",
+            "--release",
+            "--package=barrelstack-library",
+            "--package=barrelstack-web",
+            "--test=bits",
+        ],
         strict_docs: false,
         remedy: "results depend on the optimization level: see the failed test above, which passes with debug assertions",
     },
@@ -270,10 +270,13 @@ pub(crate) fn target(root: &Path) -> PathBuf {
 }
 
 /// Builds the program in the release profile.
+///
+/// The Python package is selected, too, so that both have the same features and their dependencies are compiled once.
 pub(crate) fn build_program(root: &Path) -> anyhow::Result<()> {
+    let packages = ["--package=barrelstack", "--package=barrelstack-python", "--bin=barrelstack"];
     let mut build = Command::new(cargo());
-    build.args(["build", "--quiet", "--release", "--bin", "barrelstack", "--example", "page"]);
-    let status = build.args(RELEASED).current_dir(root).status();
+    build.args(["build", "--quiet", "--release"]).args(packages);
+    let status = build.current_dir(root).status();
     if !status.context("cannot start cargo")?.success() {
         bail!("building the program failed: see above");
     }
