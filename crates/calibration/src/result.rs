@@ -154,7 +154,7 @@ impl Calibration {
 described! {
     /// Contact parameters from tests.
     pub struct CalibrationDocument of found: &Calibration {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["calibration/1"] = "calibration/1",
         /// Title: the test in one line.
         pub title: String = found.title.clone(),

@@ -22,7 +22,7 @@ described! {
     /// starts with the bodies at rest in the poses in which the main shock left them.
     #[derive(Clone, Debug)]
     pub struct AftershockSummary {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["aftershocks/1"],
         /// Title of the cellar.
         pub title: String,

@@ -77,7 +77,7 @@ described! {
     /// The plan of a cellar. Lengths are in m.
     #[derive(Clone, Debug)]
     pub struct PlanSummary {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["cellar-plan/1"],
         /// Title of the cellar.
         pub title: String,

@@ -19,7 +19,7 @@ described! {
     /// horizontal acceleration of the ground exceeds 0.02 g. A value is null where an event did not happen.
     #[derive(Clone, Debug)]
     pub struct CellarSummary {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["cellar/1"],
         /// Title of the cellar.
         pub title: String,

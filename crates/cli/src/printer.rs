@@ -140,7 +140,7 @@ fn error_document(document: &ErrorDocument, json: bool) {
 described! {
     /// The reason why a command has no result.
     pub(crate) struct ErrorDocument of error: &(&str, Option<&str>, Option<&Place>, u8) {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["error/1"] = "error/1",
         /// Error message, with the causes.
         error: String = error.0.to_owned(),

@@ -15,7 +15,7 @@ described! {
     /// Result of the check of a sound scenario.
     #[derive(Clone, Debug)]
     pub struct Checked {
-        /// Name and version of the schema.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["check/1"],
         /// The scenario's title.
         pub title: String,

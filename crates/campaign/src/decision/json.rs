@@ -15,7 +15,7 @@ use super::{Cases, Decision, Sensitivity};
 described! {
     /// Evaluation of a study. Intensities are in the SI unit of their measure.
     pub struct DecisionDocument of decision: &Decision {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["decision/1"] = "decision/1",
         /// Title of the study.
         pub title: String = decision.cases.title.clone(),

@@ -7,7 +7,7 @@ use super::{Estimate, Ranked, Ranking, Shaking};
 described! {
     /// Protections of a stack, ranked by effect and cost.
     pub struct ProtectDocument of all: &Ranking {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["protect/1"] = "protect/1",
         /// Title of the scenario.
         pub title: String = all.request.scenario.title.clone(),

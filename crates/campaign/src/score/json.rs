@@ -8,7 +8,7 @@ use super::{Capacity, Scored, Sheet};
 described! {
     /// RockScore of a rack with its devices.
     pub struct ScoreDocument of sheet: &Sheet {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["rockscore/1"] = "rockscore/1",
         /// Name and version of the protocol; only scores of the same protocol are comparable.
         pub protocol: String = sheet.protocol.name.clone(),

@@ -231,7 +231,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 described! {
     /// Plan of a study.
     pub(crate) struct StudyPlan of plan: &(&Study, Following) {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["study-plan/1"] = "study-plan/1",
         /// Title of the study.
         title: String = plan.0.title.clone(),
@@ -265,7 +265,7 @@ described! {
 
     /// Progress of a study.
     pub(crate) struct StudyStatus of status: &study::Status {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["study-status/1"] = "study-status/1",
         /// Provenance of the folder.
         provenance: study::Provenance = status.provenance.clone(),

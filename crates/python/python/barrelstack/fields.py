@@ -76,23 +76,25 @@ class BarrelFields(TypedDict, total=False):
     base: Literal["bordeaux-225", "burgundy-228", "hogshead-300", "puncheon-500"]
     """Catalog barrel on which this barrel is based. Default: bordeaux-225."""
     bilge_diameter: Quantity
-    """Outer diameter at the bilge, the widest part. Default: the value of the catalog."""
+    """Outer diameter of the barrel at the bilge, its widest part. Default: the value of the catalog."""
     capacity: Quantity
-    """Nominal volume. Default: the value of the catalog."""
+    """Nominal volume of the barrel. Default: the value of the catalog."""
     empty_mass: Quantity
-    """Mass of wood and hoops. Default: the value of the catalog."""
+    """Mass of the wood and hoops of the barrel. Default: the value of the catalog."""
     fill: Literal["full-fluid", "full-frozen", "part", "empty"]
-    """Contents, and whether they rotate with the barrel. Default: full-fluid."""
+    """Contents of the barrel, and whether they rotate with it. Default: full-fluid."""
     filled: Union[float, Quantity]
-    """Filled fraction of the capacity, for barrels whose `fill` is set to "part" here or in an override. Default:
-    0.9.
+    """Fraction of the capacity that is filled, for barrels whose `fill` is "part", here or in an override.
+    Default: 0.9.
     """
     head_diameter: Quantity
-    """Outer diameter at the heads. Default: the value of the catalog."""
+    """Outer diameter of the barrel at the heads. Default: the value of the catalog."""
     length: Quantity
-    """Length over the chimes. Default: the value of the catalog."""
+    """Overall length of the barrel, over the chimes. Default: the value of the catalog."""
     mass: Quantity
-    """Mass of wood and contents. Default: the empty mass plus 990 kg/m^3 times the filled part of the capacity."""
+    """Mass of the barrel with its contents. Default: the empty mass plus 990 kg/m^3 times the filled part of the
+    capacity.
+    """
     section_diameter: Quantity
     """Diameter of the circle that represents the barrel in the plane across the barrels. Default: the diameter of
     the barrel above the rails of the rack.
@@ -130,12 +132,12 @@ class BodyFields(TypedDict, total=False):
     Default: the name.
     """
     mass: Quantity
-    """Mass."""
+    """Mass of the body."""
     name: str
     """Unique name."""
     nodes: Union[Literal["corners", "rolling", "exact"], "NodesFields"]
-    """Contact nodes. Default: `rolling` for a circle, `corners` for straight sides, otherwise nodes 1 cm apart;
-    must be given if there is no shape.
+    """Contact nodes on the boundary. Default: `rolling` for a circle, `corners` for straight sides, otherwise
+    nodes 1 cm apart; must be given if there is no shape.
     """
     position: list[Quantity]
     """Initial position of the reference point of the shape."""
@@ -146,7 +148,7 @@ class BodyFields(TypedDict, total=False):
     velocity: list[Quantity]
     """Initial velocity of the center of mass. Default: ["0 m/s", "0 m/s"]."""
     viscous: "ViscousFields"
-    """Viscous drag."""
+    """Viscous drag on the body."""
 
 
 class BodyInSpaceFields(TypedDict, total=False):
@@ -173,8 +175,8 @@ class BodyInSpaceFields(TypedDict, total=False):
     Default: the name.
     """
     mass: Quantity
-    """Mass. Default: `density` times the volume of the solid; a body that is not fixed to the ground needs a mass
-    or a density.
+    """Mass of the body. Default: `density` times the volume of the solid; a body that is not fixed to the ground
+    needs a mass or a density.
     """
     name: str
     """Unique name."""
@@ -185,7 +187,7 @@ class BodyInSpaceFields(TypedDict, total=False):
     position: list[Quantity]
     """Initial position of the reference point of the solid."""
     solid: "SolidFields"
-    """Contact geometry."""
+    """Contact geometry of the body."""
     spin: list[Quantity]
     """Initial angular velocity about the fixed axes x, y and z, each counterclockwise. Default: ["0 rad/s", "0
     rad/s", "0 rad/s"].
@@ -193,7 +195,7 @@ class BodyInSpaceFields(TypedDict, total=False):
     velocity: list[Quantity]
     """Initial velocity of the center of mass. Default: ["0 m/s", "0 m/s", "0 m/s"]."""
     viscous: "ViscousInSpaceFields"
-    """Viscous drag."""
+    """Viscous drag on the body."""
 
 
 class BoundaryFields(TypedDict, total=False):
@@ -202,8 +204,8 @@ class BoundaryFields(TypedDict, total=False):
     kind: str
     """Kind by which interfaces refer to the boundary."""
     nodes: Union[Literal["corners", "rolling", "exact"], "NodesFields"]
-    """Contact nodes. Default: `rolling` for a circle, `corners` for straight sides, otherwise nodes 1 cm apart;
-    must be given if there is no shape.
+    """Contact nodes on the boundary. Default: `rolling` for a circle, `corners` for straight sides, otherwise
+    nodes 1 cm apart; must be given if there is no shape.
     """
     shape: "ShapeFields"
     """Outline that other bodies touch, relative to the reference point of the body's shape; if not given, the
@@ -221,7 +223,7 @@ class ChockFields(TypedDict, total=False):
     is an assumption. Default: 55 deg.
     """
     gap: Quantity
-    """Clearance between a chock and its barrel: an assumption. Default: 5 mm."""
+    """Clearance between a chock and its barrel. The default is an assumption. Default: 5 mm."""
     levels: int
     """Number of levels with chocks, counted from the top; 0 for none. Default: 0."""
 
@@ -294,10 +296,10 @@ class FreeInterfaceFields(TypedDict, total=False):
     not matter.
     """
     damping: Quantity
-    """Damping c, in N s/m per seat or node, or in N s/m^2 per length. Default: in a stack: with constants per
-    seat, derived from the restitution that the catalog gives for the seats of the rack; with constants per
-    node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the
-    elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
+    """Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary. Default: in a stack: with
+    constants per seat, derived from the restitution that the catalog gives for the seats of the rack; with
+    constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping
+    force to the elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
     `reference_speed` are given.
     """
     friction: "FrictionFields"
@@ -316,10 +318,10 @@ class FreeInterfaceFields(TypedDict, total=False):
     Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in
-    N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the catalog gives
-    for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9
-    N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the
+    exponent 1.5 in N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the
+    catalog gives for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node,
+    1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     within_groups: bool
     """True if the interface also acts between bodies of the same `group`. Default: true."""
@@ -357,7 +359,7 @@ class GroundFields(TypedDict, total=False):
     kind: str
     """Name by which interfaces and elements refer to the ground. Default: ground."""
     slope: Quantity
-    """Slope, positive when it rises to the right. Default: 0 deg."""
+    """Slope of the ground, positive if it rises to the right. Default: 0 deg."""
 
 
 class GroundInSpaceFields(TypedDict, total=False):
@@ -366,7 +368,7 @@ class GroundInSpaceFields(TypedDict, total=False):
     kind: str
     """Name by which interfaces refer to the ground. Default: ground."""
     slope: Quantity
-    """Slope, positive if it rises to the right, along x. Default: 0 deg."""
+    """Slope of the ground along x, positive if it rises to the right. Default: 0 deg."""
 
 
 class ImpactFields(TypedDict, total=False):
@@ -375,10 +377,10 @@ class ImpactFields(TypedDict, total=False):
     basis: Literal["node", "length", "seat"]
     """Unit for which stiffness and damping are stated: one contact node, or one meter of boundary. Default: node."""
     damping: Quantity
-    """Damping c, in N s/m per seat or node, or in N s/m^2 per length. Default: in a stack: with constants per
-    seat, derived from the restitution that the catalog gives for the seats of the rack; with constants per
-    node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the
-    elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
+    """Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary. Default: in a stack: with
+    constants per seat, derived from the restitution that the catalog gives for the seats of the rack; with
+    constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping
+    force to the elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
     `reference_speed` are given.
     """
     friction: "FrictionFields"
@@ -397,10 +399,10 @@ class ImpactFields(TypedDict, total=False):
     Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in
-    N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the catalog gives
-    for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9
-    N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the
+    exponent 1.5 in N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the
+    catalog gives for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node,
+    1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
@@ -434,9 +436,7 @@ class ImperfectionsFields(TypedDict, total=False):
     Default: 1.
     """
     sign: bool
-    """True to reverse the motion for half of the variants, as if these stacks faced the opposite direction.
-    Default: false.
-    """
+    """True to mirror the stack left to right in half of the variants, which are chosen at random. Default: false."""
     until: Literal["rest", "verdict", "duration"]
     """Criterion that ends a variant if `run.until` is "rest". With "verdict", a variant ends 2 s after its first
     loss of a seat, or when it is at rest on ground that stays below 0.02 g. With "rest", a variant ends when
@@ -457,10 +457,10 @@ class InterfaceFields(TypedDict, total=False):
     boundary. Default: seat.
     """
     damping: Quantity
-    """Damping c, in N s/m per seat or node, or in N s/m^2 per length. Default: in a stack: with constants per
-    seat, derived from the restitution that the catalog gives for the seats of the rack; with constants per
-    node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the
-    elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
+    """Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary. Default: in a stack: with
+    constants per seat, derived from the restitution that the catalog gives for the seats of the rack; with
+    constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping
+    force to the elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
     `reference_speed` are given.
     """
     friction: "FrictionFields"
@@ -479,10 +479,10 @@ class InterfaceFields(TypedDict, total=False):
     Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in
-    N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the catalog gives
-    for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9
-    N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the
+    exponent 1.5 in N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the
+    catalog gives for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node,
+    1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
@@ -515,8 +515,8 @@ class IsolatorFields(TypedDict, total=False):
     """
 
     bearing_stiffness: Quantity
-    """Stiffness of the bearings at one end of a platform: an assumption for steel balls on a steel plate. Default:
-    10 MN/m.
+    """Stiffness of the bearings at one end of a platform. The default is an assumption for steel balls on a steel
+    plate. Default: 10 MN/m.
     """
     dish_radius: Quantity
     """Radius of the dishes, which is the length of the equivalent pendulum; not used on a flat path. The default
@@ -527,7 +527,7 @@ class IsolatorFields(TypedDict, total=False):
     sheets, 0.6 if seized. Default: 0.01.
     """
     mass: Quantity
-    """Mass of a platform: an assumption. Default: 60 kg."""
+    """Mass of a platform. The default is an assumption. Default: 60 kg."""
     path: Literal["none", "flat", "dish"]
     """Shape of the path on which the platform moves. Default: none."""
     recentring: Quantity
@@ -535,9 +535,9 @@ class IsolatorFields(TypedDict, total=False):
     stop_damping: Quantity
     """Damping of a stop, which acts on approach only. The default is an assumption. Default: 5 kN s/m."""
     stop_stiffness: Quantity
-    """Stiffness of a stop: an assumption. Default: 500 kN/m."""
+    """Stiffness of a stop. The default is an assumption. Default: 500 kN/m."""
     stroke: Quantity
-    """Stroke of the platform to either side before it meets a stop: an assumption. Default: 20 cm."""
+    """Stroke of the platform to either side before it meets a stop. The default is an assumption. Default: 20 cm."""
 
 
 class LidFields(TypedDict, total=False):
@@ -550,11 +550,13 @@ class LidFields(TypedDict, total=False):
     kN s/m.
     """
     gap: Quantity
-    """Rise of a barrel from its position at rest before it touches its lid: an assumption. Default: 1 cm."""
+    """Rise of a barrel from its position at rest before it touches its lid. The default is an assumption. Default:
+    1 cm.
+    """
     levels: int
     """Number of levels with lids, counted from the top; 0 for none. Default: 0."""
     stiffness: Quantity
-    """Stiffness of one lid (force per displacement): an assumption. Default: 500 kN/m."""
+    """Stiffness of one lid (force per displacement). The default is an assumption. Default: 500 kN/m."""
     strength: Quantity
     """Force above which a lid breaks permanently; if not given, lids never break."""
 
@@ -569,7 +571,7 @@ class MotionFields(TypedDict, total=False):
     component.
     """
     none: bool
-    """True for ground at rest."""
+    """True if the ground stays at rest."""
     obtain: str
     """Where to get the record, shown to users who do not have it."""
     processing: Literal["default", "none"]
@@ -581,13 +583,13 @@ class MotionFields(TypedDict, total=False):
     scale: "ScaleFields"
     """Scaling of the motion. Default: factor 1."""
     sensitivity: Union[float, Quantity]
-    """Counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
+    """Sensitivity in counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
     sequence: list["ShockFields"]
     """Successive shocks of a cellar, instead of all other fields of `[motion]`: each shock is described by the
     same fields, and starts with the bodies at rest where the previous shock left them.
     """
     similitude: Union[float, Quantity]
-    """Length scale of Froude similitude applied to the motion alone. Default: 1.0."""
+    """Length scale of a Froude similitude that is applied only to the motion. Default: 1.0."""
     sine: "SineFields"
     """A harmonic motion."""
     time_step: Quantity
@@ -595,7 +597,7 @@ class MotionFields(TypedDict, total=False):
     unit: str
     """Unit of acceleration, only for a file that does not state its unit. Default: the unit of the file."""
     vertical: Union[str, Literal[False]]
-    """Vertical component of the same record, or false."""
+    """Vertical component of the same record; false for no vertical motion."""
     vertical_record: str
     """File of the vertical motion, relative to the scenario file."""
 
@@ -650,27 +652,27 @@ class OverrideFields(TypedDict, total=False):
     """A body of the stack that differs from the others."""
 
     column: int
-    """Column, 1 at the left before mirroring. The columns of racks and those of barrels are numbered separately.
-    In both planes or in three dimensions, columns are counted across the barrels. Default: every column of the
-    level.
+    """Number of the column; 1 is at the left of a stack that is not mirrored. The columns of racks and those of
+    barrels are numbered separately. In both planes or in three dimensions, columns are counted across the
+    barrels. Default: every column of the level.
     """
     fill: Literal["full-fluid", "full-frozen", "part", "empty"]
-    """Contents of the barrel, instead of the regular contents; for barrels only."""
+    """Contents of this barrel, in place of the contents of all other barrels."""
     kind: Literal["barrel", "rack"]
     """Kind of body. Default: barrel."""
     level: int
     """Level, 1 at the bottom."""
     mass: Quantity
-    """Mass of the body, instead of the regular mass."""
+    """Mass of this body, in place of the mass of all other bodies of its kind."""
     offset_x: Quantity
-    """Displacement from the regular position, positive to the right before mirroring. Default: 0 m."""
+    """Displacement from the regular position, positive to the right in a stack that is not mirrored. Default: 0 m."""
     offset_y: Quantity
     """Displacement from the regular position along the barrels, positive away from the viewer; in three dimensions
     only. Default: 0 m.
     """
     row: int
-    """Row along the barrels in a three-dimensional model, 1 nearest to the viewer. The rows of racks and those of
-    barrels are numbered separately. Default: every row.
+    """Number of the row along the barrels in a three-dimensional model; 1 is nearest to the viewer. The rows of
+    racks and those of barrels are numbered separately. Default: every row.
     """
 
 
@@ -684,7 +686,7 @@ class PadFields(TypedDict, total=False):
     value for rubber. Default: 5 kN s/m.
     """
     friction: Union[float, Quantity]
-    """Friction coefficient of wood on pads: an assumption. Default: 0.6."""
+    """Friction coefficient of wood on pads. The default is an assumption. Default: 0.6."""
     stiffness: Quantity
     """Stiffness of the pad at one support of a cradle; if not given, there are no pads."""
 
@@ -717,11 +719,11 @@ class PartShapeFields(TypedDict, total=False):
     half_angle: Quantity
     """Half the angle that the trough spans, from its lowest point."""
     bilge_diameter: Quantity
-    """Diameter at the middle."""
+    """Diameter of the barrel at its middle."""
     head_diameter: Quantity
-    """Diameter at the ends."""
+    """Diameter of the barrel at its ends."""
     length: Quantity
-    """Length."""
+    """Length of the barrel."""
 
 
 class PartSolidFields(TypedDict, total=False):
@@ -731,24 +733,24 @@ class PartSolidFields(TypedDict, total=False):
     """Radius."""
     type: Union[Literal["ball"], Literal["capsule"], Literal["block"], Literal["barrel"]]
     length: Quantity
-    """Length, including both ends. Or: Length."""
+    """Length of the capsule, including both ends. Or: Length of the barrel."""
     rounding: Quantity
     """Radius of the rounded edges; the penetration at a contact must stay below this radius. Default: 5 mm."""
     sides: list[Quantity]
     """Side lengths along local x, y and z."""
     bilge_diameter: Quantity
-    """Diameter at the middle."""
+    """Diameter of the barrel at its middle."""
     chime_radius: Quantity
     """Radius of the chime, the rounded rim between staves and head. Default: 10 mm."""
     head_diameter: Quantity
-    """Diameter at the ends."""
+    """Diameter of the barrel at its ends."""
 
 
 class PulseFields(TypedDict, total=False):
     """A pulse."""
 
     amplitude: Quantity
-    """Peak acceleration or peak velocity, according to its unit."""
+    """Peak acceleration or peak velocity; the unit determines which of them."""
     direction: Literal["horizontal", "vertical"]
     """Direction of the motion. Default: horizontal."""
     frequency: Quantity
@@ -763,7 +765,7 @@ class PulseFields(TypedDict, total=False):
     the pulse; greater than 1.
     """
     phase: Quantity
-    """Phase. Default: 0 rad."""
+    """Phase angle of the wave. Default: 0 rad."""
     cycles: int
     """Number of cycles. Default: 1."""
 
@@ -777,7 +779,7 @@ class RackFields(TypedDict, total=False):
     """Number of barrels end to end on one rack, along the barrels. Default: the value of the catalog."""
     base: Union[Literal["two-barrel"], Literal["two-barrel-feet"], Literal["single-bar"], Literal["four-barrel"], Literal["rack-on-rack"], Literal["two-barrel-inclined"], Literal["candia-2008"]]
     beam_height: Quantity
-    """Height of the beams, not including feet. Default: the value of the catalog."""
+    """Height of the beams of the rack, without its feet. Default: the value of the catalog."""
     clearance: Quantity
     """Height of the lowest point of a carried barrel above the underside of the rack. Default: the value of the
     catalog.
@@ -790,10 +792,10 @@ class RackFields(TypedDict, total=False):
     cradle: Union[Literal["supports", "arc"], "CradleFields"]
     """Cradle in which the rack carries a barrel. Default: the value of the catalog."""
     foot_half_length: Quantity
-    """Half the length of a foot. Default: the value of the catalog."""
+    """Half the length of one foot of the rack. Default: the value of the catalog."""
     foot_height: Quantity
-    """Height of the feet under the beams, one over each barrel below; 0 for straight tubes without feet. Default:
-    the value of the catalog.
+    """Height of the feet under the beams, with one foot over each barrel below; 0 for straight tubes without feet.
+    Default: the value of the catalog.
     """
     incline: Quantity
     """Inclination of the barrels along their axes, positive if the rails raise the right end. Default: the value
@@ -812,11 +814,11 @@ class RackFields(TypedDict, total=False):
     rail_width: Quantity
     """Width of one rail, along the axis of the barrel. Default: the value of the catalog."""
     seat_stroke: Quantity
-    """Penetration of a seat beyond which the impact law of the two bodies also acts. Default: the value of the
-    catalog.
+    """Penetration at a seat beyond which the impact law of the two bodies acts in addition. Default: the value of
+    the catalog.
     """
     width: Quantity
-    """Overall width across the barrels. Default: the value of the catalog."""
+    """Overall width of the rack, across the barrels. Default: the value of the catalog."""
     post_half_spacing: Quantity
     """Distance of each post from the middle of the rack, across the barrels. Default: the value of the catalog."""
     post_half_spacing_along: Quantity
@@ -847,14 +849,16 @@ class RunFields(TypedDict, total=False):
     long, the steps of "fine" a quarter as long. Default: standard.
     """
     duration: Quantity
-    """Simulated time; for a run that ends by "rest", the maximum simulated time. Default: the duration of the
+    """Simulated time; if `until` is "rest" or "verdict", the maximum simulated time. Default: the duration of the
     motion plus `patience`, or plus 5 s if the run ends by duration.
     """
     gravity: Quantity
     """Acceleration of gravity. Default: 9.80665 m/s^2."""
     method: Union[Literal["velocity-verlet"], Literal["semi-implicit-euler"], Literal["runge-kutta-4"], Literal["bogacki-shampine"]]
     patience: Quantity
-    """Maximum time for which a run that ends by "rest" continues after the end of the motion. Default: 30 s."""
+    """Maximum time for which a run continues after the end of the motion if `until` is "rest" or "verdict".
+    Default: 30 s.
+    """
     settle: bool
     """True if the bodies are brought to rest under gravity before the motion starts. Default: true."""
     similitude: Union[float, Quantity]
@@ -864,13 +868,13 @@ class RunFields(TypedDict, total=False):
     step is divided during impacts. Default: auto.
     """
     stop_after_collapse: Quantity
-    """Time that the run continues after a collapse. Default: never stop early."""
+    """Time for which the run continues after a collapse. Default: never stop early."""
     until: Literal["rest", "verdict", "duration"]
     """Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and
     all bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack
-    has come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. Variants of
-    a run that ends by "rest" end by `imperfections.until`. Default: "rest" for a stack, "duration" for a free
-    scene.
+    has come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest",
+    the runs of the variants end as `imperfections.until` states. Default: "rest" for a stack, "duration" for a
+    free scene.
     """
     tolerance: Union[float, Quantity]
     """Largest relative error of one step. Default: 1e-6."""
@@ -882,20 +886,20 @@ class ScaleFields(TypedDict, total=False):
     factor: Union[float, Quantity]
     """Factor; a negative factor reverses the motion. Default: 1 unless another field scales the motion."""
     measure: str
-    """Any other intensity measure that grows with the motion. The motion is scaled so that the measure reaches
-    `value`: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)` (period in
-    seconds, damping 5 %) or `sa(1.0,0.02)`.
+    """Any other intensity measure that grows with the motion, which is scaled so that this measure reaches
+    `value`. Examples: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)`
+    (period in seconds, damping 5 %) or `sa(1.0,0.02)`.
     """
     of: Literal["component", "rotd50", "rotd100", "geomean"]
     """Components from which `measure` is computed: the component that drives the stack, or both horizontals of the
     record. Default: component.
     """
     pga: Quantity
-    """Peak horizontal acceleration to reach."""
+    """Peak horizontal acceleration to which the motion is scaled."""
     pgv: Quantity
-    """Peak horizontal velocity to reach."""
+    """Peak horizontal velocity to which the motion is scaled."""
     value: Quantity
-    """Value of `measure` to reach."""
+    """Value of `measure` to which the motion is scaled."""
 
 
 class ScenarioFields(TypedDict, total=False):
@@ -949,11 +953,11 @@ class ShapeFields(TypedDict, total=False):
     half_angle: Quantity
     """Half the angle that the trough spans, from its lowest point."""
     bilge_diameter: Quantity
-    """Diameter at the middle."""
+    """Diameter of the barrel at its middle."""
     head_diameter: Quantity
-    """Diameter at the ends."""
+    """Diameter of the barrel at its ends."""
     length: Quantity
-    """Length."""
+    """Length of the barrel."""
     parts: list["PartFields"]
     """The outlines; where two of them overlap, the mass of the overlap counts twice."""
 
@@ -970,7 +974,7 @@ class ShockFields(TypedDict, total=False):
     component.
     """
     none: bool
-    """True for ground at rest."""
+    """True if the ground stays at rest."""
     obtain: str
     """Where to get the record, shown to users who do not have it."""
     processing: Literal["default", "none"]
@@ -982,9 +986,9 @@ class ShockFields(TypedDict, total=False):
     scale: "ScaleFields"
     """Scaling of the motion. Default: factor 1."""
     sensitivity: Union[float, Quantity]
-    """Counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
+    """Sensitivity in counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
     similitude: Union[float, Quantity]
-    """Length scale of Froude similitude applied to the motion alone. Default: 1.0."""
+    """Length scale of a Froude similitude that is applied only to the motion. Default: 1.0."""
     sine: "SineFields"
     """A harmonic motion."""
     time_step: Quantity
@@ -992,7 +996,7 @@ class ShockFields(TypedDict, total=False):
     unit: str
     """Unit of acceleration, only for a file that does not state its unit. Default: the unit of the file."""
     vertical: Union[str, Literal[False]]
-    """Vertical component of the same record, or false."""
+    """Vertical component of the same record; false for no vertical motion."""
     vertical_record: str
     """File of the vertical motion, relative to the scenario file."""
 
@@ -1001,7 +1005,7 @@ class SineFields(TypedDict, total=False):
     """A harmonic motion."""
 
     amplitude: Quantity
-    """Amplitude of displacement, velocity or acceleration, according to its unit."""
+    """Peak displacement, velocity or acceleration; the unit determines which of them."""
     cycles: Union[float, Quantity]
     """Number of cycles, including ramps; the duration can be stated instead. Default: `duration` / `period`."""
     direction: Literal["horizontal", "vertical"]
@@ -1025,17 +1029,17 @@ class SolidFields(TypedDict, total=False):
     """Radius."""
     type: Union[Literal["ball"], Literal["capsule"], Literal["block"], Literal["barrel"], Literal["half-space"], Literal["compound"]]
     length: Quantity
-    """Length, including both ends. Or: Length."""
+    """Length of the capsule, including both ends. Or: Length of the barrel."""
     rounding: Quantity
     """Radius of the rounded edges; the penetration at a contact must stay below this radius. Default: 5 mm."""
     sides: list[Quantity]
     """Side lengths along local x, y and z."""
     bilge_diameter: Quantity
-    """Diameter at the middle."""
+    """Diameter of the barrel at its middle."""
     chime_radius: Quantity
     """Radius of the chime, the rounded rim between staves and head. Default: 10 mm."""
     head_diameter: Quantity
-    """Diameter at the ends."""
+    """Diameter of the barrel at its ends."""
     parts: list["SolidPartFields"]
     """The solids, all of the same density; where two of them overlap, the mass of the overlap counts twice."""
 
@@ -1144,7 +1148,9 @@ class TieFields(TypedDict, total=False):
     levels: int
     """Number of levels that are tied, counted from the top; 0 for none. Default: 0."""
     side: Literal["left", "right", "both"]
-    """Side on which there is a wall or a ceiling, before mirroring. Default: both."""
+    """Side of the stack on which there is a wall or a ceiling. If the stack is mirrored, the wall or ceiling is on
+    the other side. Default: both.
+    """
     slack: Quantity
     """Slack of one tie on the stack at rest: the elongation at which the tie begins to pull. Default: 1 cm."""
     stiffness: Quantity
@@ -1166,8 +1172,8 @@ class TunedMassFields(TypedDict, total=False):
     """
 
     damping_ratio: Union[float, Quantity]
-    """Damping ratio of the mass; the optimum for a mass ratio μ is √(3μ/8(1 + μ)), which is 0.13 for 5 % (Den
-    Hartog 1956). Default: 0.13.
+    """Damping ratio of the mass; the optimum for a mass ratio μ is √(3μ/(8(1 + μ))), which is 0.13 for μ = 5 %
+    (Den Hartog 1956). Default: 0.13.
     """
     level: int
     """Level of the racks that carry a mass; 0 for the top level. Default: 0."""
@@ -1178,9 +1184,9 @@ class TunedMassFields(TypedDict, total=False):
     ratio μ (Den Hartog 1956). Default: 1 s.
     """
     stop_stiffness: Quantity
-    """Stiffness of the stops: an assumption. Default: 100 kN/m."""
+    """Stiffness of the stops. The default is an assumption. Default: 100 kN/m."""
     stroke: Quantity
-    """Stroke of the mass to either side before it meets a stop: an assumption. Default: 30 cm."""
+    """Stroke of the mass to either side before it meets a stop. The default is an assumption. Default: 30 cm."""
 
 
 class UnknownsFields(TypedDict, total=False):
@@ -1206,8 +1212,8 @@ class UnknownsFields(TypedDict, total=False):
     0.35, nine in ten variants have a μ within a factor of 1.8 of the stated value. Default: 0.35.
     """
     friction_barrel_rack: Union[float, Quantity]
-    """Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured. After a
-    measurement, only the scatter of ln μ from one pair of barrel and rack to another remains. Default:
+    """Standard deviation of ln μ for barrels on racks only; to be stated if this friction was measured. What
+    remains after a measurement is the scatter of ln μ between pairs of a barrel and a rack. Default:
     `friction`.
     """
     friction_correlation: Union[float, Quantity]
@@ -1226,21 +1232,21 @@ class UnknownsFields(TypedDict, total=False):
     """
     rails: Quantity
     """Largest deviation of `stack.rack.rail_half_spacing` to either side. It is uniformly distributed and drawn
-    once for all racks, since racks are made alike. Not drawn by default, because 1 cm changes shares of
-    collapses by less than their sampling error. Default: 0 mm.
+    once for all racks, since racks are made alike. Not drawn by default, because a deviation of 1 cm changes
+    the shares of collapses by less than their sampling error. Default: 0 mm.
     """
     static_friction: Union[float, Quantity]
     """Largest excess of the static over the kinetic friction coefficient of barrels on racks, as a fraction of the
     kinetic coefficient. The excess is uniformly distributed from 0, drawn once for all seats, and added to the
     stated excess. Tests of chestnut on chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not
-    drawn by default: in planar models, an excess of 0.4 changes shares of collapses by less than their sampling
-    error; in three dimensions, 39 of 64 variants of the demo on four levels collapse instead of 53, a result of
-    a single seed. Default: 0.
+    drawn by default: in planar models, an excess of 0.4 changes the shares of collapses by less than their
+    sampling error. In three dimensions, it reduces the number of collapses of the demo with four levels from 53
+    to 39 of 64 variants, with a single seed. Default: 0.
     """
     stick: Union[float, Quantity]
     """Standard deviation of the logarithm of the ratio of tangential to normal stiffness; one value is drawn for
-    all seats. Not drawn by default, because a factor of 2 changes shares of collapses by less than their
-    sampling error. Default: 0.
+    all seats. Not drawn by default, because a change by a factor of 2 changes the shares of collapses by less
+    than their sampling error. Default: 0.
     """
     stiffness: Union[float, Quantity]
     """Standard deviation of ln k, where k is the stiffness of seats; one value is drawn for all seats. The default
@@ -1276,8 +1282,8 @@ class WalkingStopFields(TypedDict, total=False):
     assumption. Default: 2 kN s/m.
     """
     gap: Quantity
-    """Displacement of a rack from its position at rest, to either side, before it meets a lip: an assumption.
-    Default: 2 cm.
+    """Displacement of a rack from its position at rest, to either side, before it meets a lip. The default is an
+    assumption. Default: 2 cm.
     """
     holds: Literal["along", "across", "both"]
     """Direction in which the stops hold: along the barrels, across them, or both. Default: along."""
@@ -1286,12 +1292,12 @@ class WalkingStopFields(TypedDict, total=False):
     has stops. Default: 0.
     """
     lip: Quantity
-    """Height of the lips: an assumption. A rack that has risen by more than this height is disengaged. Default: 4
-    cm.
+    """Height of the lips. A rack that has risen by more than this height is disengaged. The default is an
+    assumption. Default: 4 cm.
     """
     stiffness: Quantity
-    """Stiffness of the lips at one barrel (force per displacement): an assumption for bent steel plate. Default: 1
-    MN/m.
+    """Stiffness of the lips at one barrel (force per displacement). The default is an assumption for bent steel
+    plate. Default: 1 MN/m.
     """
     strength: Quantity
     """Force above which the lips at one barrel break permanently; if not given, lips never break."""

@@ -85,13 +85,13 @@ section! {
     pub static RUN = "run", by method of METHODS;
     /// Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and all
     /// bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack has
-    /// come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. Variants of a run
-    /// that ends by "rest" end by `imperfections.until`.
+    /// come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest", the
+    /// runs of the variants end as `imperfections.until` states.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");
-    /// Maximum time for which a run that ends by "rest" continues after the end of the motion.
+    /// Maximum time for which a run continues after the end of the motion if `until` is "rest" or "verdict".
     patience: f64 = Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)), Default::Value("\"30 s\"");
-    /// Simulated time; for a run that ends by "rest", the maximum simulated time.
+    /// Simulated time; if `until` is "rest" or "verdict", the maximum simulated time.
     duration: Option<f64> = Kind::Quantity(&[Dimension::TIME], Range::up_to(LONGEST_RUN)),
         Default::Derived("the duration of the motion plus `patience`, or plus 5 s if the run ends by duration");
     /// Time integration method.
@@ -104,7 +104,7 @@ section! {
     step: Option<f64> =
         Kind::WordOr("auto", &[Dimension::TIME], Range { least: 1e-9, above: false, greatest: 0.1 }),
         Default::Value("\"auto\"");
-    /// Time that the run continues after a collapse.
+    /// Time for which the run continues after a collapse.
     stop_after_collapse: Option<f64> =
         Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)), Default::Derived("never stop early");
     /// Acceleration of gravity.

@@ -51,11 +51,11 @@ choices! {
     }
     /// A barrel in side view with its axis along local x; the reference point is the middle.
     BarrelProfile = "barrel-profile" {
-        /// Length.
+        /// Length of the barrel.
         length: f64 = SIZE, Default::Required;
-        /// Diameter at the middle.
+        /// Diameter of the barrel at its middle.
         bilge_diameter: f64 = SIZE, Default::Required;
-        /// Diameter at the ends.
+        /// Diameter of the barrel at its ends.
         head_diameter: f64 = SIZE, Default::Required;
     }
     /// Several outlines joined into one rigid body; the reference point is the local origin.

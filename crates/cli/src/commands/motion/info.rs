@@ -273,7 +273,7 @@ described! {
     /// Contents of records. Lengths are in m, times in s, and directions in degrees clockwise from
     /// north.
     pub(crate) struct MotionInfo {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["motion-info/1"],
         /// The records.
         records: Vec<RecordInfo>,

@@ -182,7 +182,7 @@ pub(super) fn status(status: &Status) -> Vec<String> {
 described! {
     /// Results of a study.
     pub(crate) struct StudyResult of found: &(&Answer, &Provenance) {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["study-result/1"] = "study-result/1",
         /// Provenance of the rows of the study.
         provenance: Provenance = found.1.clone(),
