@@ -657,13 +657,13 @@ class OverrideFields(TypedDict, total=False):
     barrels. Default: every column of the level.
     """
     fill: Literal["full-fluid", "full-frozen", "part", "empty"]
-    """Contents of this barrel, in place of the contents of all other barrels."""
+    """Contents of this barrel, which replace the contents that apply to other barrels."""
     kind: Literal["barrel", "rack"]
     """Kind of body. Default: barrel."""
     level: int
     """Level, 1 at the bottom."""
     mass: Quantity
-    """Mass of this body, in place of the mass of all other bodies of its kind."""
+    """Mass of this body; it replaces the mass that applies to other bodies of its kind."""
     offset_x: Quantity
     """Displacement from the regular position, positive to the right in a stack that is not mirrored. Default: 0 m."""
     offset_y: Quantity

@@ -39,9 +39,9 @@ section! {
     /// Number of the row along the barrels in a three-dimensional model; 1 is nearest to the viewer. The rows of racks
     /// and those of barrels are numbered separately.
     row: Option<u32> = COLUMNS, Default::Derived("every row");
-    /// Mass of this body, in place of the mass of all other bodies of its kind.
+    /// Mass of this body; it replaces the mass that applies to other bodies of its kind.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
-    /// Contents of this barrel, in place of the contents of all other barrels.
+    /// Contents of this barrel, which replace the contents that apply to other barrels.
     fill: Option<Fill> = Kind::Choice(names::<Fill>), Default::Nothing;
     /// Displacement from the regular position, positive to the right in a stack that is not mirrored.
     offset_x: f64 =

@@ -188,7 +188,7 @@ described! {
         provenance: Provenance = found.1.clone(),
         /// Outcomes of the cases of the study.
         tally: TallyRow = TallyRow::of(&(found.0.tally, found.1.is_sample())),
-        /// Notes on cases whose runs were ended early.
+        /// Notes on cases whose runs ended early.
         notes: Vec<String> = found.0.endings.sentences(),
         /// Outcomes of cases, for each level that several cases share.
         levels: Vec<LevelTally> = found.0.levels().iter().map(LevelTally::of).collect(),
