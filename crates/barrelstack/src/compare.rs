@@ -348,7 +348,7 @@ described! {
             side.other.as_ref().map(|other| other.outcome.kind()),
     }
 
-    /// An input that is not equal in all runs.
+    /// An input whose value is not the same in all runs.
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct Difference {
         /// Path of the input, as in an override.

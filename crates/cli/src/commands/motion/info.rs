@@ -23,8 +23,8 @@ pub(super) struct InfoArgs {
     input: Input,
     #[arg(
         long,
-        help = "Also CAV standardized, RMS, Housner, ASI, VSI, Fajfar, Sa, RotD50 and RotD100, and \
-                the dominant velocity pulse"
+        help = "Also print CAV standardized, RMS, Housner, ASI, VSI, Fajfar, Sa, RotD50 and RotD100, \
+                and the dominant velocity pulse"
     )]
     all_measures: bool,
     /// Print one JSON document, in SI units.

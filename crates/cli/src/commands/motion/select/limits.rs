@@ -46,8 +46,8 @@ pub(super) struct Limits {
     /// Range of magnitudes, from the flatfile or the header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) magnitude: Option<Range>,
-    /// Range of distances in km: distance to the rupture from the flatfile or, without a flatfile,
-    /// distance to the epicenter from the header.
+    /// Range of distances in km: to the rupture, from the flatfile; without a flatfile, to the epicenter, from the
+    /// header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) distance: Option<Range>,
     /// Range of Vs30 in m/s, from the flatfile or the header.
