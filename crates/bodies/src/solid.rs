@@ -44,7 +44,7 @@ choices! {
         bilge_diameter: f64 = SIZE, Default::Required;
         /// Diameter of the barrel at its ends.
         head_diameter: f64 = SIZE, Default::Required;
-        /// Radius of the chime, the rounded rim between staves and head.
+        /// Radius of the chime, the rounded rim between the staves and a head.
         chime_radius: f64 = SIZE, Default::Value("\"10 mm\"");
     }
     /// Everything below local z = 0, such as a floor or, rotated, a wall; only for a body fixed to the ground.

@@ -40,7 +40,7 @@ const MEANINGS: [(&str, &str); 39] = [
         "coordinate",
         "position along the boundary: an angle on a round boundary, a length on a straight boundary",
     ),
-    ("length_of_boundary", "length of the boundary on which the stress at rest acts"),
+    ("length_of_boundary", "length of boundary on which the stress at rest acts"),
     ("stress_at_rest", "normal stress at rest"),
     (
         "peak_stress_until_first_loss_of_seat",

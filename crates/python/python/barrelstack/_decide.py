@@ -214,8 +214,8 @@ class Protections(Page):
 
     @property
     def table(self) -> Table:
-        """One row for every protection, in the order of the page. The columns are the cost for one stack (US$, lower and
-        upper); the probability of collapse (1, or 1/year at a site), the barrels fallen and the barrels saved, each
+        """One row for every protection, in the order of the page. The columns are the cost for one stack (US$, lower
+        and upper); the probability of collapse (1, or 1/year at a site), the barrels fallen and the barrels saved, each
         with its 95 % interval; and the 95 % range of the probability over the uncertain constants of the seats. The
         last two columns are shares (1) of the draws of these constants: those in which fewer barrels fall than without
         a protection, and those in which fewer barrels fall than with the protection in the next row.

@@ -436,7 +436,9 @@ class ImperfectionsFields(TypedDict, total=False):
     Default: 1.
     """
     sign: bool
-    """True to mirror the stack left to right in half of the variants, which are chosen at random. Default: false."""
+    """True to mirror the stack left to right in half of the variants, which are chosen at random; false to mirror
+    no variant. Default: false.
+    """
     until: Literal["rest", "verdict", "duration"]
     """Criterion that ends a variant if `run.until` is "rest". With "verdict", a variant ends 2 s after its first
     loss of a seat, or when it is at rest on ground that stays below 0.02 g. With "rest", a variant ends when
@@ -606,9 +608,11 @@ class NodeFields(TypedDict, total=False):
     """A contact node at a chosen point."""
 
     at: list[Quantity]
-    """Position in the body, relative to the reference point of the shape."""
+    """Position of the node in the body, relative to the reference point of the shape."""
     tributary_length: Quantity
-    """Length of boundary that the node represents, for laws per meter of boundary. Default: 1 cm."""
+    """Length of boundary that the node represents; used if constants are stated per meter of boundary. Default: 1
+    cm.
+    """
 
 
 class NodesFields(TypedDict, total=False):
@@ -619,8 +623,8 @@ class NodesFields(TypedDict, total=False):
     list: list["NodeFields"]
     """Nodes at chosen points."""
     rule: Literal["corners", "rolling", "exact"]
-    """Nodes at the corners, one node at the deepest point of a circle, or exact contact. If both bodies have exact
-    contact, their convex outlines touch each other at their deepest points.
+    """Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. If
+    both bodies have exact contact, their convex outlines touch each other at their deepest points.
     """
     spacing: Quantity
     """Largest distance between nodes along the boundary."""
@@ -636,15 +640,15 @@ class OutcomeFields(TypedDict, total=False):
     overturning_angle: Quantity
     """The stack counts as overturned if its bottom rack is inclined by more than this angle. Default: 30 deg."""
     rack_slide_ratio: Union[float, Quantity]
-    """Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left the
-    barrels. Across the barrels, the reach ends where friction cannot hold the rack on the curved sides of the
-    barrels; along the barrels, it ends where the rail of the rack passes the ends of the barrels. Default: 1.0.
+    """A rack has left the barrels below when its displacement on them exceeds this fraction of its reach. Across
+    the barrels, the reach ends where friction cannot hold the rack on the curved sides of the barrels; along
+    the barrels, it ends where the rail of the rack passes the ends of the barrels. Default: 1.0.
     """
     rocking_angle: Quantity
     """A level counts as rocked over if its rack is inclined by more than this angle. Default: 20 deg."""
     seat_loss_ratio: Union[float, Quantity]
-    """Distance of the center of a barrel from its position in the rack, in barrel radii, beyond which the barrel
-    has lost its seat. Default: 0.5.
+    """A barrel has lost its seat when the distance of its center from its position in the rack exceeds this number
+    of barrel radii. Default: 0.5.
     """
 
 
@@ -665,10 +669,12 @@ class OverrideFields(TypedDict, total=False):
     mass: Quantity
     """Mass of this body; it replaces the mass that applies to other bodies of its kind."""
     offset_x: Quantity
-    """Displacement from the regular position, positive to the right in a stack that is not mirrored. Default: 0 m."""
+    """Displacement of the body from its regular position, positive to the right in a stack that is not mirrored.
+    Default: 0 m.
+    """
     offset_y: Quantity
-    """Displacement from the regular position along the barrels, positive away from the viewer; in three dimensions
-    only. Default: 0 m.
+    """Displacement of the body from its regular position along the barrels, positive away from the viewer; in
+    three dimensions only. Default: 0 m.
     """
     row: int
     """Number of the row along the barrels in a three-dimensional model; 1 is nearest to the viewer. The rows of
@@ -717,7 +723,7 @@ class PartShapeFields(TypedDict, total=False):
     vertices: list[list[Quantity]]
     """Corners in order around the polygon; sides must not cross."""
     half_angle: Quantity
-    """Half the angle that the trough spans, from its lowest point."""
+    """Half the angle that the trough spans: the angle from its lowest point to its edge."""
     bilge_diameter: Quantity
     """Diameter of the barrel at its middle."""
     head_diameter: Quantity
@@ -741,7 +747,7 @@ class PartSolidFields(TypedDict, total=False):
     bilge_diameter: Quantity
     """Diameter of the barrel at its middle."""
     chime_radius: Quantity
-    """Radius of the chime, the rounded rim between staves and head. Default: 10 mm."""
+    """Radius of the chime, the rounded rim between the staves and a head. Default: 10 mm."""
     head_diameter: Quantity
     """Diameter of the barrel at its ends."""
 
@@ -844,9 +850,10 @@ class RunFields(TypedDict, total=False):
     """Settings of the run."""
 
     accuracy: Literal["screening", "standard", "fine"]
-    """Accuracy of the motion if no step is given: with "standard", the times of falls are within 10 ms, and the
-    drifts within 1 %, of the results with steps ten times shorter. The steps of "screening" are 1.25 times as
-    long, the steps of "fine" a quarter as long. Default: standard.
+    """Accuracy of the computed motion if no step is given. With "standard", the times of falls differ by at most
+    10 ms, and the drifts by at most 1 %, from the results with steps ten times shorter. The steps of
+    "screening" are 1.25 times as long as those of "standard", and the steps of "fine" are a quarter as long.
+    Default: standard.
     """
     duration: Quantity
     """Simulated time; if `until` is "rest" or "verdict", the maximum simulated time. Default: the duration of the
@@ -886,9 +893,9 @@ class ScaleFields(TypedDict, total=False):
     factor: Union[float, Quantity]
     """Factor; a negative factor reverses the motion. Default: 1 unless another field scales the motion."""
     measure: str
-    """Any other intensity measure that grows with the motion, which is scaled so that this measure reaches
-    `value`. Examples: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)`
-    (period in seconds, damping 5 %) or `sa(1.0,0.02)`.
+    """Name of any other intensity measure that grows with the motion. The motion is scaled so that this measure
+    reaches `value`. Examples: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`,
+    `sa(1.0)` (period in seconds, damping 5 %) and `sa(1.0,0.02)`.
     """
     of: Literal["component", "rotd50", "rotd100", "geomean"]
     """Components from which `measure` is computed: the component that drives the stack, or both horizontals of the
@@ -951,7 +958,7 @@ class ShapeFields(TypedDict, total=False):
     vertices: list[list[Quantity]]
     """Corners in order around the polygon; sides must not cross."""
     half_angle: Quantity
-    """Half the angle that the trough spans, from its lowest point."""
+    """Half the angle that the trough spans: the angle from its lowest point to its edge."""
     bilge_diameter: Quantity
     """Diameter of the barrel at its middle."""
     head_diameter: Quantity
@@ -1037,7 +1044,7 @@ class SolidFields(TypedDict, total=False):
     bilge_diameter: Quantity
     """Diameter of the barrel at its middle."""
     chime_radius: Quantity
-    """Radius of the chime, the rounded rim between staves and head. Default: 10 mm."""
+    """Radius of the chime, the rounded rim between the staves and a head. Default: 10 mm."""
     head_diameter: Quantity
     """Diameter of the barrel at its ends."""
     parts: list["SolidPartFields"]
@@ -1115,7 +1122,7 @@ class StrapFields(TypedDict, total=False):
     damping: Quantity
     """Damping of one strap while it is taut (force per rate of elongation). Default: 0 N s/m."""
     levels: int
-    """Number of levels that are strapped, counted from the top; 0 for no straps. Default: 0."""
+    """Number of levels with straps, counted from the top; 0 for no straps. Default: 0."""
     pretension: Quantity
     """Force in one strap when it is tightened; the stack settles under this force, so that part of the force is
     lost. Default: 0 N.
@@ -1129,8 +1136,8 @@ class StrapFields(TypedDict, total=False):
     strength: Quantity
     """Force above which a strap tears permanently; if not given, straps never tear."""
     ties: Literal["barrels-to-racks", "levels-together"]
-    """Bodies that are tied: every barrel to its rack, or in addition every rack to the rack below. Default:
-    barrels-to-racks.
+    """Bodies that the straps tie together: every barrel to its rack, or in addition every rack to the rack below.
+    Default: barrels-to-racks.
     """
 
 
@@ -1146,7 +1153,7 @@ class TieFields(TypedDict, total=False):
     one winery keeps from its walls (Press Democrat 2014). Default: 45 cm.
     """
     levels: int
-    """Number of levels that are tied, counted from the top; 0 for none. Default: 0."""
+    """Number of levels with ties, counted from the top; 0 for none. Default: 0."""
     side: Literal["left", "right", "both"]
     """Side of the stack on which there is a wall or a ceiling. If the stack is mirrored, the wall or ceiling is on
     the other side. Default: both.
@@ -1161,7 +1168,7 @@ class TieFields(TypedDict, total=False):
     strength: Quantity
     """Force above which a tie tears permanently; if not given, ties never tear."""
     to: Literal["wall", "ceiling", "neighbors"]
-    """Anchor of the ties; walls and ceilings move with the ground. Default: wall."""
+    """Structure to which the ties are anchored; walls and ceilings move with the ground. Default: wall."""
     yields_at: Quantity
     """Force at which a tie yields and becomes permanently longer; if not given, ties never yield."""
 
@@ -1178,7 +1185,7 @@ class TunedMassFields(TypedDict, total=False):
     level: int
     """Level of the racks that carry a mass; 0 for the top level. Default: 0."""
     mass: Quantity
-    """Mass on each rack of the level; 0 for no tuned masses. Default: 0 kg."""
+    """Tuned mass on each rack of the level; 0 for no tuned masses. Default: 0 kg."""
     period: Quantity
     """Natural period of the mass; the optimum for an undamped structure with period T is (1 + μ) T for a mass
     ratio μ (Den Hartog 1956). Default: 1 s.
@@ -1204,7 +1211,7 @@ class UnknownsFields(TypedDict, total=False):
     drawn: bool
     """True to draw the constants at random; false to keep them as stated in all variants. Default: true."""
     friction: Union[float, Quantity]
-    """Standard deviation of ln μ where racks or barrels touch each other, the same for static and kinetic
+    """Standard deviation of ln μ for contacts between racks or barrels; it is the same for static and kinetic
     friction. One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels;
     these values also apply to bodies that have fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer
     on smooth steel and up to 0.80 on rough steel (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut
@@ -1245,7 +1252,7 @@ class UnknownsFields(TypedDict, total=False):
     """
     stick: Union[float, Quantity]
     """Standard deviation of the logarithm of the ratio of tangential to normal stiffness; one value is drawn for
-    all seats. Not drawn by default, because a change by a factor of 2 changes the shares of collapses by less
+    all seats. Not drawn by default, because a factor of 2 in this ratio changes the shares of collapses by less
     than their sampling error. Default: 0.
     """
     stiffness: Union[float, Quantity]
@@ -1288,8 +1295,8 @@ class WalkingStopFields(TypedDict, total=False):
     holds: Literal["along", "across", "both"]
     """Direction in which the stops hold: along the barrels, across them, or both. Default: along."""
     levels: int
-    """Number of levels whose racks have stops, counted from the top; 12 for all, 0 for none. The bottom rack never
-    has stops. Default: 0.
+    """Number of levels with stops under their racks, counted from the top; 12 for all levels, 0 for none. The
+    bottom rack never has stops. Default: 0.
     """
     lip: Quantity
     """Height of the lips. A rack that has risen by more than this height is disengaged. The default is an

@@ -75,7 +75,7 @@ section! {
     pub struct TunedMass;
     /// Masses on the racks of one level, which oscillate on springs and dampers in the plane and touch no other body.
     pub static SECTION = "tuned_mass";
-    /// Mass on each rack of the level; 0 for no tuned masses.
+    /// Tuned mass on each rack of the level; 0 for no tuned masses.
     mass: f64 =
         Kind::Quantity(&[Dimension::MASS], Range::between(0.0, 1e4)), Default::Value("\"0 kg\"");
     /// Level of the racks that carry a mass; 0 for the top level.

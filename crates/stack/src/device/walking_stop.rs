@@ -63,8 +63,8 @@ section! {
     pub struct WalkingStops;
     /// Stops between racks and the barrels below: lips that a rack touches after it has walked through a gap.
     pub static SECTION = "walking_stop";
-    /// Number of levels whose racks have stops, counted from the top; 12 for all, 0 for none. The bottom rack never has
-    /// stops.
+    /// Number of levels with stops under their racks, counted from the top; 12 for all levels, 0 for none. The bottom
+    /// rack never has stops.
     levels: u32 = LEVELS, Default::Value("0");
     /// Direction in which the stops hold: along the barrels, across them, or both.
     holds: Holds = Kind::Choice(names::<Holds>), Default::Value("\"along\"");

@@ -43,11 +43,11 @@ section! {
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
     /// Contents of this barrel, which replace the contents that apply to other barrels.
     fill: Option<Fill> = Kind::Choice(names::<Fill>), Default::Nothing;
-    /// Displacement from the regular position, positive to the right in a stack that is not mirrored.
+    /// Displacement of the body from its regular position, positive to the right in a stack that is not mirrored.
     offset_x: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
-    /// Displacement from the regular position along the barrels, positive away from the viewer; in three dimensions
-    /// only.
+    /// Displacement of the body from its regular position along the barrels, positive away from the viewer; in three
+    /// dimensions only.
     offset_y: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
 }

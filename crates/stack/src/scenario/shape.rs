@@ -45,7 +45,7 @@ choices! {
     Cradle = "cradle" {
         /// Radius.
         radius: f64 = SIZE, Default::Required;
-        /// Half the angle that the trough spans, from its lowest point.
+        /// Half the angle that the trough spans: the angle from its lowest point to its edge.
         half_angle: f64 =
             Kind::Quantity(&[Dimension::ANGLE], Range::up_to(PI)), Default::Required;
     }

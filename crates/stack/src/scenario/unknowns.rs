@@ -19,12 +19,12 @@ section! {
     pub static UNKNOWNS = "unknowns";
     /// True to draw the constants at random; false to keep them as stated in all variants.
     drawn: bool = Kind::Flag, Default::Value("true");
-    /// Standard deviation of ln μ where racks or barrels touch each other, the same for static and kinetic friction.
-    /// One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels; these values
-    /// also apply to bodies that have fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer on smooth steel
-    /// and up to 0.80 on rough steel (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut (Villar-García et al.
-    /// 2020), 0.37 to 0.45 for pallets on steel racks. The default is an assumption; with 0.35, nine in ten variants
-    /// have a μ within a factor of 1.8 of the stated value.
+    /// Standard deviation of ln μ for contacts between racks or barrels; it is the same for static and kinetic
+    /// friction. One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels; these
+    /// values also apply to bodies that have fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer on smooth
+    /// steel and up to 0.80 on rough steel (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut (Villar-García et
+    /// al. 2020), 0.37 to 0.45 for pallets on steel racks. The default is an assumption; with 0.35, nine in ten
+    /// variants have a μ within a factor of 1.8 of the stated value.
     friction: f64 = DISPERSION, Default::Value("0.35");
     /// Standard deviation of ln μ for barrels on racks only; to be stated if this friction was measured. What remains
     /// after a measurement is the scatter of ln μ between pairs of a barrel and a rack.
@@ -55,7 +55,7 @@ section! {
     /// variants, with a single seed.
     static_friction: f64 = DISPERSION, Default::Value("0");
     /// Standard deviation of the logarithm of the ratio of tangential to normal stiffness; one value is drawn for all
-    /// seats. Not drawn by default, because a change by a factor of 2 changes the shares of collapses by less than
+    /// seats. Not drawn by default, because a factor of 2 in this ratio changes the shares of collapses by less than
     /// their sampling error.
     stick: f64 = DISPERSION, Default::Value("0");
     /// Largest deviation of `stack.rack.rail_half_spacing` to either side. It is uniformly distributed and drawn once

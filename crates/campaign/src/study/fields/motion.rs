@@ -23,7 +23,7 @@ named! {
 }
 
 const SOURCE: [Field; 4] = fields! {
-    /// Moment magnitude.
+    /// Moment magnitude of the earthquake.
     magnitude = Kind::Number(Range::between(1.0, 9.5)), Default::Required;
     /// Distance from the source to the site.
     distance = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1e7)), Default::Required;
