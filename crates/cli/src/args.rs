@@ -46,11 +46,11 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Shake a five-level stack with the South Napa earthquake of 2014 and write a report.
     Demo(DemoArgs),
-    /// Safe height: how often stacks of two to six levels collapse, on one page.
+    /// Find the safe height: how often stacks of two to six levels collapse, on one page.
     Heights(crate::commands::heights::HeightsArgs),
-    /// Protection with the best benefit for its cost: levels, racks, devices, or pairs of these.
+    /// Find the most cost-effective protection: fewer levels, other racks, devices, or pairs of these.
     Protect(crate::commands::protect::ProtectArgs),
-    /// RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
+    /// Compute the RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
     Score(crate::commands::score::ScoreArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
@@ -58,7 +58,7 @@ pub(crate) enum Command {
     Aftershock(crate::commands::aftershock::AftershockArgs),
     /// Run two or more scenarios and compare them on one page.
     Compare(crate::commands::compare::CompareArgs),
-    /// Run every case of the paper, and compare its numbers with those of the program.
+    /// Run every case of the paper, and compare the numbers of the paper with those of the program.
     Reproduce(ReproduceArgs),
     /// Read, inspect, change and make ground motions.
     Motion(Box<crate::commands::motion::MotionArgs>),

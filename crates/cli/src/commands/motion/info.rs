@@ -30,7 +30,7 @@ pub(super) struct InfoArgs {
     /// Print one JSON document, in SI units.
     #[arg(long)]
     json: bool,
-    /// Folder for the table, if the input is a folder.
+    /// Folder for the table of all records, if the input is a folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]

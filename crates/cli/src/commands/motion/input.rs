@@ -89,11 +89,10 @@ pub(super) enum Chain {
     None,
     /// Process as in a scenario: compact for raw records, no processing for all others.
     Default,
-    /// Remove the pre-event mean, taper 2 %, apply a zero-phase high-pass filter at 0.1 Hz and
-    /// remove its pads, and bring the final velocity and displacement to zero.
+    /// Remove the pre-event mean, taper 2 % of each end, apply a zero-phase high-pass filter at 0.1 Hz, remove the pads
+    /// of the filter, and bring the final velocity and displacement to zero.
     Compact,
-    /// Like compact, but keep the pads of the filter, which are quiet time before and after the
-    /// shaking.
+    /// Like compact, but keep the pads of the filter: quiet time before and after the shaking.
     Padded,
 }
 

@@ -41,7 +41,7 @@ pub(super) struct PlotArgs {
     /// Damping ratio of the response spectra; may be repeated.
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     damping: Vec<String>,
-    /// Replace existing figures.
+    /// Replace figures that already exist.
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]

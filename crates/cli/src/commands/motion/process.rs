@@ -26,7 +26,7 @@ pub(super) struct ProcessArgs {
     /// Component to use: a name, an azimuth in degrees, h1, h2 or vertical; may be repeated.
     #[arg(long, value_name = "NAME")]
     component: Vec<String>,
-    /// Processing chain to start from; the options below change it.
+    /// Chain of processing steps to start from; the options below change it.
     #[arg(long, value_enum, default_value_t = Chain::Compact)]
     chain: Chain,
     /// Mean to remove from the record.
@@ -48,7 +48,7 @@ pub(super) struct ProcessArgs {
     /// Order of the Butterworth filter, which is applied forward and backward.
     #[arg(long, value_name = "NUMBER")]
     order: Option<u32>,
-    /// Treatment of the zero pads that are added for the filter.
+    /// Treatment of the zeros that are added before and after the record for the filter (pads).
     #[arg(long, value_enum)]
     pads: Option<Fate>,
     /// Bring the final velocity and displacement to zero by adding the smallest smooth acceleration
@@ -65,7 +65,7 @@ pub(super) struct ProcessArgs {
     rotate: Option<Axes>,
     #[command(flatten)]
     output: Output,
-    /// Format in which the motions of a folder are written.
+    /// Format of the output files, if the input is a folder.
     #[arg(long, value_enum, default_value_t = Form::Txt)]
     form: Form,
     /// Plot the record before and after processing: as panels (.png, .svg, .pdf) or as a page (.html).

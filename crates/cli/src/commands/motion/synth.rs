@@ -29,7 +29,7 @@ struct Common {
     /// pulses.
     #[arg(long, value_name = "TIME")]
     time_step: Option<String>,
-    /// Make the motion a vertical component.
+    /// Make the motion a vertical component instead of a horizontal one.
     #[arg(long)]
     vertical: bool,
     #[command(flatten)]

@@ -53,7 +53,8 @@ pub(super) struct Limits {
     /// Range of Vs30 in m/s, from the flatfile or the header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) vs30: Option<Range>,
-    /// Pulse class of eligible records (Shahi and Baker 2014; Baker 2007 for a single horizontal).
+    /// Pulse class of eligible records, according to Shahi and Baker (2014) or, for a single horizontal component,
+    /// Baker (2007).
     #[arg(long, value_enum, default_value_t = Pulses::Any)]
     pulses: Pulses,
 }
