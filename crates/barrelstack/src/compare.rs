@@ -319,12 +319,12 @@ described! {
     /// Two or more runs side by side.
     #[derive(Clone, Debug)]
     pub struct Comparison of sides: &[Side], unfinished: Vec<String> {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["comparison/1"] = "comparison/1",
         /// The runs, in order.
         pub runs: Vec<Compared> = sides.iter().map(Compared::of).collect(),
-        /// Paired comparison of the first run with every other run: the shown plane first, then the
-        /// other plane.
+        /// Comparisons of the first run with every other run, variant by variant: first in the plane that is shown,
+        /// then in the other plane.
         pub paired: Vec<Paired> = pairs(sides),
         /// Names of the runs that were stopped early or never started; they are not compared.
         pub unfinished: Vec<String> = unfinished,
@@ -339,17 +339,16 @@ described! {
         pub name: String = side.name.clone(),
         /// Summary of the run.
         pub summary: AnySummary = side.summary.clone(),
-        /// Statistics of the variants in the plane that is not shown; null if the scenario has one
-        /// plane.
+        /// Statistics of the variants in the plane that is not shown; null if the scenario has only one plane.
         pub ensemble_of_other_plane: Option<Spread> =
             side.other.as_ref().and_then(|other| other.spread.clone()),
-        /// Outcome in the plane that is not shown; null if the scenario has one plane.
+        /// Outcome in the plane that is not shown; null if the scenario has only one plane.
         pub outcome_of_other_plane: Option<&'static str>
             ["stable", "collapse", "not-judged", "interrupted", "invalid"] =
             side.other.as_ref().map(|other| other.outcome.kind()),
     }
 
-    /// An input that is not equal in all runs.
+    /// An input whose value is not the same in all runs.
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct Difference {
         /// Path of the input, as in an override.

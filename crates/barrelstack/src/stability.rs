@@ -28,7 +28,7 @@ described! {
     /// Static stability of stacks, with one row for each rack, plane and height.
     #[derive(Clone, Debug)]
     pub struct StabilityTable {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["stability/1"],
         /// Title of the scenario.
         pub title: String,
@@ -63,7 +63,7 @@ described! {
         pub period: Option<f64> as "s",
         /// Tilt of the floor at which the stack fails; null if it still stands at 45°.
         pub tilt: Option<f64> as "rad",
-        /// Name of the body that fails first at the tilt `tilt`.
+        /// Name of the body that fails first when the floor is tilted by `tilt`.
         pub body: Option<String>,
         /// Failure mode of the body that fails first.
         pub failure: Option<&'static str> ["slides", "tips", "is displaced"],

@@ -25,7 +25,7 @@ described! {
     /// is null if it does not apply or if the event did not happen.
     #[derive(Clone, Debug)]
     pub struct Summary of run: &Run, wall_seconds: Option<f64> {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["summary/2"] = "summary/2",
         /// Title of the scenario.
         pub title: String = run.stated.title.clone(),
@@ -35,10 +35,9 @@ described! {
         pub variant: u32 = 0,
         /// Statistics of all variants; null if no variants were run.
         pub ensemble: Option<Spread> = None,
-        /// Progress of the runs; null unless they were stopped early.
+        /// Progress of the runs when they were stopped; null if they were not stopped early.
         pub unfinished: Option<Unfinished> = None,
-        /// Changes that would have kept the stack up; null if the stack stands, or if there was no
-        /// search.
+        /// Changes that would have kept the stack up; null if the stack stands, or if no change was searched for.
         pub remedy: Option<Remedy> = None,
         /// Outcome of the run.
         pub outcome: OutcomeSummary = outcome(run),
@@ -48,7 +47,7 @@ described! {
         pub demands: Demands = demands(run, Span::UntilLoss),
         /// Demands on the stack over the whole run, falls included.
         pub demands_whole_run: Demands = demands(run, Span::WholeRun),
-        /// Forces between all bodies that pressed on each other; empty if the run is invalid.
+        /// Forces between every two bodies that pressed on each other; empty if the run is invalid.
         pub interfaces: Vec<JointSummary> = joints(run),
         /// The force elements of every device.
         #[serde(flatten)]
@@ -65,8 +64,8 @@ described! {
         pub provenance: Provenance = Provenance::of(run),
         /// Comparison of the run with its repeats; null if there were no repeats.
         pub verification: Option<Verification> = None,
-        /// Summary of the other plane, if the scenario has both planes; the outer summary is that
-        /// of the governing plane.
+        /// Summary of the run in the other plane; null if the scenario has only one plane. The summary that contains
+        /// this one is that of the governing plane.
         pub other_plane: Option<Box<Summary>> = None,
     }
 
@@ -97,8 +96,7 @@ described! {
         pub to_level: Option<u32>,
         /// Time at which the first barrel counts as fallen.
         pub first_fall: Option<f64> as "s",
-        /// Number of barrels that had fallen at the end; null if the run is invalid or was stopped
-        /// early.
+        /// Number of barrels that had fallen by the end of the run; null if the run is invalid or was stopped early.
         pub barrels_fallen: Option<usize>,
         /// Number of all barrels.
         pub barrels: usize,
@@ -130,12 +128,12 @@ described! {
         pub landing_speed: Option<f64> as "m/s" = fate.landing_speed,
         /// Largest force on the body after its fall.
         pub fall_force: Option<f64> as "N" = fate.fall_force,
-        /// Displacement along x relative to the ground, at the end.
+        /// Displacement along x relative to the ground, at the end of the run.
         pub residual_displacement: f64 as "m" = fate.residual_displacement,
         /// Largest displacement along x relative to the ground, while the stack stood.
         pub peak_displacement: f64 as "m" = fate.peak_displacement,
-        /// Displacement relative to the support of the body, at the end: the walk of a rack, or the
-        /// slip of a barrel in its cradle.
+        /// Displacement relative to the support of the body, at the end of the run: the walk of a rack, or the slip of
+        /// a barrel in its cradle.
         pub residual_slip: f64 as "m" = fate.residual_slip,
         /// Largest displacement relative to the support, while the stack stood.
         pub peak_slip: f64 as "m" = fate.peak_slip,
@@ -143,7 +141,7 @@ described! {
         pub peak_uplift: f64 as "m" = fate.peak_uplift,
         /// Largest tilt while the stack stood; racks only.
         pub peak_tilt: Option<f64> as "rad" = (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
-        /// Largest normal stress at rest, per meter of boundary.
+        /// Largest normal stress at rest, as a force per meter of boundary.
         pub stress_at_rest: Option<f64> as "N/m" = stress.map(|s| s.at_rest.iter().copied().fold(0.0, f64::max)),
         /// Largest normal stress until the first loss of seat, divided by the largest normal stress
         /// at rest; the two may occur at different points.
@@ -160,7 +158,7 @@ described! {
     }
 
     /// The force between two bodies, as it acts on the upper body, or on the body named first if neither rests on the
-    /// other. Largest forces are those of largest magnitude over all steps; those of a planar model are signed.
+    /// other. A largest force is the one of largest magnitude over all steps; in a planar model, it has a sign.
     #[derive(Clone, Debug)]
     pub struct JointSummary {
         /// Names of the bodies, such as "R1 on ground", or "R1.1 against R1.2" for bodies that
@@ -207,7 +205,7 @@ described! {
         pub viscous: f64 as "J" = balance.viscous,
         /// Work done by the ground.
         pub ground_work: f64 as "J" = balance.ground_work,
-        /// Residual of the balance, the error of the computation.
+        /// Energy that the other terms of the balance do not account for; it is the error of the computation.
         pub residual: f64 as "J" = balance.residual,
         /// Energy supplied: absolute value of the work of the ground, plus the decrease of
         /// potential energy.
@@ -227,7 +225,7 @@ described! {
         pub steps: u64 = run.work.steps,
         /// Number of evaluations of all forces.
         pub evaluations: u64 = run.work.evaluations,
-        /// Number of contact elements tested.
+        /// Number of contact elements tested in all evaluations.
         pub contact_evaluations: u64 = run.work.contact_evaluations,
         /// Simulated time reached.
         pub end_time: f64 as "s" = run.end_time,
@@ -238,11 +236,11 @@ described! {
         /// Unit for which the contact constants are stated: a seat, a contact node or a length of boundary; "mixed" if
         /// it differs between contacts.
         pub stiffness_basis: &'static str ["seat", "node", "length", "mixed"] = run.stiffness_basis(),
-        /// Length scale of similitude.
+        /// Length scale of the similitude; 1 if none is applied.
         pub similitude: f64 as "1" = run.scenario.run.similitude,
         /// Number of steps taken to find equilibrium.
         pub settle_steps: Option<u64> = run.settled.map(|settled| settled.steps),
-        /// Elapsed real time.
+        /// Wall-clock time of the run; null if it was not measured.
         pub wall_seconds: Option<f64> as "s" = wall_seconds,
     }
 

@@ -39,8 +39,8 @@ described! {
     pub struct Verification {
         /// Distance beyond which the positions of a body in two runs count as diverged.
         pub apart: f64 as "m",
-        /// Time until which every body in every repeat stays within the distance `apart` of its
-        /// position in the run; null if this holds to the end.
+        /// Time until which every body in every repeat stays within the distance `apart` of its position in the run;
+        /// null if this holds to the end of the run.
         pub predictable_until: Option<f64> as "s",
         /// Properties of the run that all repeats share.
         pub robust: Robust,

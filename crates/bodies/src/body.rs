@@ -32,9 +32,9 @@ section! {
     name: String = Kind::Text, Default::Required;
     /// Kind of the body. Interfaces refer to bodies by their kind, and several bodies may have the same kind.
     kind: Option<String> = Kind::Text, Default::Derived("the name");
-    /// Contact geometry.
+    /// Contact geometry of the body.
     solid: Solid = Kind::Table(&SOLID), Default::Required;
-    /// Mass.
+    /// Mass of the body.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE),
         Default::Derived("`density` times the volume of the solid; a body that is not fixed to the ground needs a \
             mass or a density");
@@ -64,7 +64,7 @@ section! {
     group: Option<String> = Kind::Text, Default::Nothing;
     /// True if the body moves with the ground.
     fixed_to_ground: bool = Kind::Flag, Default::Value("false");
-    /// Viscous drag.
+    /// Viscous drag on the body.
     viscous: Option<Viscous> = Kind::Table(&VISCOUS), Default::Nothing;
 }
 

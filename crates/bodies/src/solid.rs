@@ -23,7 +23,7 @@ choices! {
     }
     /// A cylinder along local x with hemispherical ends; the reference point is the middle.
     Capsule = "capsule" {
-        /// Length, including both ends.
+        /// Length of the capsule, including both ends.
         length: f64 = SIZE, Default::Required;
         /// Radius.
         radius: f64 = SIZE, Default::Required;
@@ -38,13 +38,13 @@ choices! {
     }
     /// A homogeneous barrel with its axis along local x; the reference point is the middle.
     Barrel = "barrel" {
-        /// Length.
+        /// Length of the barrel.
         length: f64 = SIZE, Default::Required;
-        /// Diameter at the middle.
+        /// Diameter of the barrel at its middle.
         bilge_diameter: f64 = SIZE, Default::Required;
-        /// Diameter at the ends.
+        /// Diameter of the barrel at its ends.
         head_diameter: f64 = SIZE, Default::Required;
-        /// Radius of the chime, the rounded rim between staves and head.
+        /// Radius of the chime, the rounded rim between the staves and a head.
         chime_radius: f64 = SIZE, Default::Value("\"10 mm\"");
     }
     /// Everything below local z = 0, such as a floor or, rotated, a wall; only for a body fixed to the ground.

@@ -20,7 +20,7 @@ pub struct Estimate {
     pub dimension: Dimension,
 }
 
-/// Share of stacks or barrels that the model predicts for one statement.
+/// Share of stacks or barrels that fall according to the model, for one statement on what fell in an earthquake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelShare {
     /// Name of the statement.
@@ -154,7 +154,7 @@ impl Calibration {
 described! {
     /// Contact parameters from tests.
     pub struct CalibrationDocument of found: &Calibration {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["calibration/1"] = "calibration/1",
         /// Title: the test in one line.
         pub title: String = found.title.clone(),
@@ -168,10 +168,10 @@ described! {
         /// Condition number of the fit: ratio of the largest to the smallest eigenvalue of the normalized
         /// information matrix.
         pub condition: Option<f64> as "1" = found.condition.and_then(bounded),
-        /// Shares of stacks or barrels that the model predicts for each statement on an earthquake; empty for a fit
-        /// to tests.
+        /// Shares of stacks or barrels that fall according to the model, for each statement on what fell in an
+        /// earthquake; empty for a fit to tests.
         pub shares: Vec<ShareRow> = found.shares.iter().map(ShareRow::of).collect(),
-        /// Further results for display: text by name.
+        /// Further results for display, as texts with their names.
         pub facts: BTreeMap<String, String> = found.facts.iter().cloned().collect(),
         /// Lines to paste into a scenario.
         pub scenario: String = found.scenario.clone(),
@@ -179,7 +179,7 @@ described! {
         pub warnings: Vec<String> = found.warnings.clone(),
     }
 
-    /// Share of stacks or barrels that the model predicts for one statement.
+    /// Share of stacks or barrels that fall according to the model, for one statement on what fell in an earthquake.
     pub struct ShareRow of share: &ModelShare {
         /// Name of the statement.
         pub statement: String = share.statement.clone(),

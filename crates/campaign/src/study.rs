@@ -119,7 +119,7 @@ pub struct Study {
 /// Factor: one or several fields of the scenario that are varied together.
 #[derive(Clone, Debug)]
 struct Factor {
-    /// Name of the column of the factor.
+    /// Name of the column with the values of the factor.
     name: String,
     /// Paths of the fields that take the value of the factor.
     fields: Vec<String>,

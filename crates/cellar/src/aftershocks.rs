@@ -18,11 +18,11 @@ use crate::summary::{self, Count, Mean, ShockAnswer};
 use crate::words::{failed, followed, longest_cut, mean_share, span, survival};
 
 described! {
-    /// Survival of aftershocks of several strengths. The main shock of every variant is run once; each aftershock
-    /// starts with the bodies at rest in the poses in which the main shock left them.
+    /// Stacks of a cellar that survive aftershocks of several strengths. The main shock of every variant is run once;
+    /// each aftershock starts with the bodies at rest in the poses in which the main shock left them.
     #[derive(Clone, Debug)]
     pub struct AftershockSummary {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["aftershocks/1"],
         /// Title of the cellar.
         pub title: String,
@@ -36,9 +36,9 @@ described! {
         pub factor_of: &'static str ["main-shock", "record"],
         /// Number of variants that the statistics count; 1 if only the room as stated was run.
         pub counted: u32,
-        /// Numbers of the variants whose computation failed, which are not counted.
+        /// Numbers of the variants whose computation failed; they are not counted.
         pub broken: Vec<u32>,
-        /// Number of variants that finished; null unless the work was stopped early.
+        /// Number of finished variants; null if the work was not stopped early.
         pub unfinished: Option<Unfinished>,
         /// The main shock; null if no run is counted.
         pub main: Option<ShockAnswer>,
@@ -69,15 +69,15 @@ described! {
         pub shock: ShockAnswer,
     }
 
-    /// Residual margin of a stack.
+    /// Survival of one stack in the aftershocks.
     #[derive(Clone, Debug)]
     pub struct Margin {
         /// Name of the stack.
         pub name: String,
         /// Variants in which the stack stands after the main shock.
         pub stands: Count,
-        /// For each aftershock, the variants in which the stack falls, out of those in which it stands after the main
-        /// shock.
+        /// For each aftershock, the number of variants in which the stack falls, of those in which it stands after the
+        /// main shock.
         pub falls: Vec<Count>,
         /// Distribution of the largest horizontal displacement of a body of the stack at the end of the main shock,
         /// over the variants in which the stack stands.

@@ -61,7 +61,7 @@ described! {
     pub struct CellarComparison {
         /// Name and version of the format of this document.
         pub schema: &'static str ["cellar-comparison/1"],
-        /// What changes, in one sentence.
+        /// Difference between the layouts, in one sentence.
         pub headline: String,
         /// The layouts that were run, in order; the first is the one to which the others are compared.
         pub layouts: Vec<LayoutAnswer>,
@@ -70,8 +70,8 @@ described! {
         /// Names of the layouts, sorted by the share of barrels that fall, the smallest first; layouts without a valid
         /// variant are left out.
         pub order: Vec<String>,
-        /// Requested changes that were not run, because the stacks would not fit into the room or the change does not
-        /// apply to the cellar.
+        /// Requested changes that were not run, because the changed stacks would not fit into the room, or because the
+        /// change does not apply to the cellar.
         pub left_out: Vec<LeftOut>,
         /// Names of the layouts that were stopped early or never started; they are not compared.
         pub unfinished: Vec<String>,
@@ -100,7 +100,7 @@ described! {
         pub stacks: usize,
         /// Number of variants that the statistics count; 1 if only the room as stated was run.
         pub counted: u32,
-        /// Numbers of the variants whose computation failed, which are not counted.
+        /// Numbers of the variants whose computation failed; they are not counted.
         pub broken: Vec<u32>,
         /// Number of stacks that fall by themselves.
         pub by_themselves: Estimate as "1",
@@ -193,9 +193,9 @@ described! {
     /// A change that was not run.
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct LeftOut {
-        /// Name of the change.
+        /// Name of the change that was not run.
         pub name: String,
-        /// Reason.
+        /// Reason why the change was not run.
         pub reason: String,
     }
 }

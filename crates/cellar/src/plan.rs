@@ -77,7 +77,7 @@ described! {
     /// The plan of a cellar. Lengths are in m.
     #[derive(Clone, Debug)]
     pub struct PlanSummary {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["cellar-plan/1"],
         /// Title of the cellar.
         pub title: String,
@@ -103,9 +103,9 @@ described! {
         pub aisles: Vec<AislePlan>,
         /// The places where people work.
         pub places: Vec<PlacePlan>,
-        /// What prevents a run, one sentence each, with its place in the file.
+        /// Problems that prevent a run, one sentence each, with their places in the file.
         pub problems: Vec<String>,
-        /// What narrows an aisle or leaves a place without a path to a door, one sentence each.
+        /// Findings about narrowed aisles and about places without a path to a door, one sentence each.
         pub findings: Vec<String>,
         /// Hash of the cellar with every default written out.
         pub cellar_hash: String,
@@ -118,7 +118,7 @@ described! {
         pub stack: String,
         /// The side of the room.
         pub side: &'static str ["left", "right", "near", "far"],
-        /// Free distance.
+        /// Free distance between the stack and the side of the room.
         pub distance: f64 as "m",
     }
 
@@ -129,7 +129,7 @@ described! {
         pub first: String,
         /// Name of the other stack.
         pub second: String,
-        /// Free distance.
+        /// Free distance between the two stacks.
         pub distance: f64 as "m",
     }
 

@@ -63,7 +63,7 @@ section! {
     /// Coefficient of restitution: ratio of the speeds after and before a body strikes a wall or column.
     restitution: Option<f64> = Kind::Number(Range::up_to(1.0)),
         Default::Derived("that of a barrel that strikes the ground, `interface.barrel-ground`");
-    /// Friction coefficient of bodies on walls and columns.
+    /// Friction coefficient between bodies and the walls and columns.
     friction: Option<f64> = Kind::Number(Range::between(0.0, 2.0)),
         Default::Derived("that of a barrel on the ground, `interface.barrel-ground`");
 }
@@ -76,9 +76,9 @@ section! {
     pub static COLUMN = "column";
     /// Unique name.
     name: String = Kind::Text, Default::Required;
-    /// Position of its middle, along x and y.
+    /// Position of the middle of the column, along x and y.
     at: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Required;
-    /// Sides along x and y.
+    /// Side lengths of the column along x and y.
     size: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Value("[\"0.4 m\", \"0.4 m\"]");
 }
 
@@ -134,9 +134,9 @@ impl Column {
 /// Rows of equal stacks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
-    /// Name, by which changes refer to the block.
+    /// Name by which changes refer to the block.
     pub name: Option<String>,
-    /// Number of rows, which follow each other along y.
+    /// Number of rows; the rows follow each other along y.
     pub rows: u32,
     /// Number of stacks in a row; they follow each other along x.
     pub stacks: u32,
@@ -160,13 +160,13 @@ pub struct Block {
 }
 
 table! {
-    /// Rows of stacks; every stack is a copy of the stack that this file describes.
+    /// A block: rows of stacks, each of which is a copy of the stack that this file describes.
     pub static BLOCK = "block";
-    /// Name, by which a change can refer to the block.
+    /// Name by which a change can refer to the block.
     name = Kind::Text, Default::Nothing;
-    /// Number of rows, which follow each other along y.
+    /// Number of rows; the rows follow each other along y.
     rows = Kind::Integer(1, 500), Default::Value("1");
-    /// Number of stacks in a row, which follow each other along x.
+    /// Number of stacks in a row; the stacks follow each other along x.
     stacks = Kind::Integer(1, 500), Default::Value("1");
     /// Position of the near left corner of the first stack.
     first = Kind::Point(Dimension::LENGTH), Default::Required;
@@ -194,7 +194,7 @@ fn kinds() -> Vec<&'static str> {
 table! {
     /// A cellar: stacks in rows in one room, on one ground.
     pub static CELLAR = "cellar";
-    /// Version of the language.
+    /// Version of the format of cellar files.
     schema = Kind::Integer(1, 1), Default::Required;
     /// Title, in one line.
     title = Kind::Text, Default::Derived("name of the file");
@@ -684,7 +684,7 @@ impl Cellar {
     }
 }
 
-/// Returns the number of barrels of the stack that a scenario describes.
+/// Returns the number of barrels in the stack that a scenario describes.
 pub(crate) fn barrels(scenario: &Scenario) -> u64 {
     scenario.stack().map_or(0, |stack| {
         let along = stack.space.map_or(1, |space| space.columns_along);

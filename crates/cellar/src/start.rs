@@ -27,16 +27,16 @@ section! {
     /// A shift of a stack or of one of its bodies.
     #[derive(Clone, Debug, PartialEq)]
     pub struct ShiftSpec;
-    /// A shift before the first shock, relative to the place at rest as built.
+    /// A shift of a stack or of one of its bodies before the first shock, relative to its position at rest as built.
     pub static SHIFT = "shift";
-    /// Stack: row and number in the row, such as "1-2".
+    /// Name of the stack: its row and its number in the row, such as "1-2".
     stack: String = Kind::Text, Default::Required;
-    /// Body of the stack, such as "B2.1".
+    /// Name of the body of the stack, such as "B2.1".
     body: Option<String> = Kind::Text, Default::Derived("all bodies of the stack");
     /// Displacement along x, y and z of the room.
     by: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Value("[\"0 m\", \"0 m\", \"0 m\"]");
-    /// Turn, counterclockwise from above: a body turns about its center of mass, a stack about the middle of its
-    /// footprint.
+    /// Angle of rotation, counterclockwise from above. A body turns about its center of mass, a stack about the middle
+    /// of its footprint.
     turn: f64 = Kind::Quantity(&[Dimension::ANGLE], Range::between(-7.0, 7.0)), Default::Value("\"0 deg\"");
 }
 
@@ -47,7 +47,7 @@ table! {
     /// `body` (empty for the whole stack), and either shifts (`dx (m)`, `dy (m)`, `dz (m)`, `turn (deg)`) or, for all
     /// bodies of a stack, poses in the frame of the stack (`x (m)`, `y (m)`, `z (m)`, `qw`, `qx`, `qy`, `qz`).
     file = Kind::Text, Default::Nothing;
-    /// Shifts, in this order, after those of the file.
+    /// Shifts that are applied in this order, after the shifts of the file.
     shift = Kind::Tables(&SHIFT), Default::Nothing;
 }
 

@@ -15,11 +15,11 @@ use crate::result::RoomRun;
 use crate::sample::{Case, Prepared, StackCase};
 
 described! {
-    /// Results of a cellar. Lengths are in m, times in s from the start of the shaking, the first time at which the
-    /// horizontal acceleration of the ground exceeds 0.02 g. A value is null where an event did not happen.
+    /// Results of a cellar. Lengths are in m. Times are in s and start with the shaking, when the horizontal
+    /// acceleration of the ground first exceeds 0.02 g. A value is null where an event did not happen.
     #[derive(Clone, Debug)]
     pub struct CellarSummary {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["cellar/1"],
         /// Title of the cellar.
         pub title: String,
@@ -29,13 +29,13 @@ described! {
         pub plan: PlanSummary,
         /// Number of variants that the statistics count; 1 if only the room as stated was run.
         pub counted: u32,
-        /// Numbers of the variants whose computation failed, which are not counted.
+        /// Numbers of the variants whose computation failed; they are not counted.
         pub broken: Vec<u32>,
-        /// Number of runs that finished; null unless the work was stopped early.
+        /// Number of finished runs; null if the work was not stopped early.
         pub unfinished: Option<Unfinished>,
-        /// The whole room.
+        /// Results of the whole room.
         pub room: RoomAnswer,
-        /// The rows.
+        /// Results of the rows.
         pub rows: Vec<RowAnswer>,
         /// The stacks, row by row.
         pub stacks: Vec<StackAnswer>,
@@ -60,7 +60,7 @@ described! {
         pub other_component: Option<MotionSummary>,
         /// Vertical component of the ground motion; null where the motion has none.
         pub vertical_component: Option<VerticalMotion>,
-        /// Time in the record at which the shaking starts.
+        /// Time at which the shaking starts, in the record.
         pub onset: f64 as "s",
         /// Warnings, one sentence each.
         pub warnings: Vec<String>,
@@ -89,22 +89,23 @@ described! {
     /// probability of the event (Wilson 1927).
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Count {
-        /// Number of variants.
+        /// Number of variants in which the event happens.
         pub of_variants: u32,
-        /// Share of the counted variants; null if there are none.
+        /// Share of the counted variants in which the event happens; null if no variant is counted.
         pub share: Option<f64> as "1",
-        /// Bounds of the interval.
+        /// Bounds of the 95 % interval.
         pub interval: [f64; 2] as "1",
     }
 
-    /// The whole room.
+    /// Results of the whole room.
     #[derive(Clone, Debug)]
     pub struct RoomAnswer {
         /// Variants in which at least one stack falls.
         pub some_fall: Count,
         /// Mean number of stacks that fall by themselves.
         pub by_themselves: f64 as "1",
-        /// Mean number of stacks that are knocked over: a body of another stack touched them before they lost a seat.
+        /// Mean number of stacks that are knocked over, that is, touched by a body of another stack before they lose a
+        /// seat.
         pub knocked_over: f64 as "1",
         /// Share of the stacks standing before the run that fall by themselves, over all variants; its interval
         /// treats each room as one observation.
@@ -119,8 +120,8 @@ described! {
         pub stacks_fallen: Range as "1",
         /// Distribution of the number of barrels that fall.
         pub barrels_fallen: Range as "1",
-        /// Expected number of barrels that burst, under three assumptions on the share that bursts at a given height
-        /// of fall: low, central and high.
+        /// Expected number of barrels that burst, under a low, a central and a high assumption on the share of barrels
+        /// that burst at a given height of fall.
         pub burst: [f64; 3] as "1",
         /// Expected loss of wine, under the three assumptions of `burst`.
         pub wine_lost: [f64; 3] as "m3",
@@ -136,7 +137,7 @@ described! {
     pub struct Mean {
         /// The mean.
         pub mean: f64 as "1",
-        /// Bounds of the interval, within 0 to 1.
+        /// Bounds of the 95 % interval, between 0 and 1.
         pub interval: [f64; 2] as "1",
     }
 
@@ -160,9 +161,9 @@ described! {
     pub struct StackAnswer {
         /// Name: row and number in the row.
         pub name: String,
-        /// Row.
+        /// Number of the row.
         pub row: u32,
-        /// Number in the row.
+        /// Number of the stack in the row.
         pub number: u32,
         /// Position of the middle of the stack.
         pub at: [f64; 2] as "m",
@@ -174,7 +175,7 @@ described! {
         pub knocked_over: Count,
         /// Distribution of the time at which the stack first loses a seat.
         pub falls_at: Option<Range> as "s",
-        /// Name of the stack that is most often the first to touch this stack; null if none touches it.
+        /// Name of the other stack that is most often the first to touch this stack; null if none touches it.
         pub touched_by: Option<String>,
         /// Distribution of the time of the first contact with another stack.
         pub touched_at: Option<Range> as "s",
@@ -226,10 +227,10 @@ described! {
         pub name: String,
         /// Variants in which a body strikes the wall or column.
         pub struck: Count,
-        /// Distribution of the largest force, over the variants in which a body strikes the wall or column.
+        /// Distribution of the largest force on the wall or column, over the variants in which a body strikes it.
         pub peak: Option<Range> as "N",
-        /// Distribution of the impulse of the whole run, over the variants in which a body strikes the wall or column.
-        /// Bodies that lean on it contribute to the impulse.
+        /// Distribution of the impulse on the wall or column during the whole run, over the variants in which a body
+        /// strikes it. Bodies that lean on the wall or column contribute to the impulse.
         pub impulse: Option<Range> as "N s",
     }
 
@@ -240,7 +241,7 @@ described! {
         pub shock: u32,
         /// Ground motion.
         pub motion: Option<MotionSummary>,
-        /// Time, in the record of the shock, at which the shaking starts.
+        /// Time at which the shaking starts, in the record of the shock.
         pub onset: f64 as "s",
         /// Mean number of stacks that stand before the shock.
         pub stood: f64 as "1",
@@ -259,8 +260,8 @@ described! {
         pub barrels_fallen: Range as "1",
         /// For each aisle, the variants in which it is blocked after the shock.
         pub blocked: Vec<Count>,
-        /// Variants in which a body still moves when the shock ends; in the next shock, the body starts from the
-        /// place that it had reached, at rest.
+        /// Variants in which a body still moves when the shock ends. In the next shock, this body starts at rest from
+        /// the place that it has reached.
         pub still_moving: Count,
         /// The stacks, in the order of the plan.
         pub stacks: Vec<ShockStack>,
@@ -309,7 +310,7 @@ described! {
     pub struct ShownRoom {
         /// Number of the variant; 0 is the room as stated.
         pub variant: u32,
-        /// True if this run is the most typical of those that are counted.
+        /// True if this run is the most typical of the counted runs.
         pub typical: bool,
         /// End of the run, as a time in the record. A run ends when all bodies rest or its duration is over, unless it
         /// is stopped earlier.
@@ -347,7 +348,8 @@ described! {
         pub touched_at: Option<f64> as "s",
         /// Name of the other stack.
         pub touched_by: Option<String>,
-        /// Names of the bodies in the first contact: that of this stack, and that of the other stack.
+        /// Names of the two bodies in the first contact: first the body of this stack, then the body of the other
+        /// stack.
         pub bodies: Option<[String; 2]>,
         /// Impulse that other stacks exert on the stack until it loses a seat, or over the whole run if it stands; null
         /// if it lost a seat before it was touched.

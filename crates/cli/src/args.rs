@@ -46,19 +46,19 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Shake a five-level stack with the South Napa earthquake of 2014 and write a report.
     Demo(DemoArgs),
-    /// Safe height: how often stacks of two to six levels collapse, on one page.
+    /// Find the safe height: how often stacks of two to six levels collapse, on one page.
     Heights(crate::commands::heights::HeightsArgs),
-    /// Protection with the best benefit for its cost: levels, racks, devices, or pairs of these.
+    /// Find the most cost-effective protection: fewer levels, other racks, devices, or pairs of these.
     Protect(crate::commands::protect::ProtectArgs),
-    /// RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
+    /// Compute the RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
     Score(crate::commands::score::ScoreArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
-    /// Run a cellar through its motion and an aftershock: do the stacks that still stand survive?
+    /// Shake a cellar with its motion and then an aftershock: do the stacks that still stand survive?
     Aftershock(crate::commands::aftershock::AftershockArgs),
     /// Run two or more scenarios and compare them on one page.
     Compare(crate::commands::compare::CompareArgs),
-    /// Run every case of the paper, and compare its numbers with those of the program.
+    /// Run every case of the paper, and compare the numbers of the paper with those of the program.
     Reproduce(ReproduceArgs),
     /// Read, inspect, change and make ground motions.
     Motion(Box<crate::commands::motion::MotionArgs>),
@@ -99,7 +99,7 @@ pub(crate) struct VariantArgs {
     /// stack as stated.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
     pub(crate) variants: Option<u32>,
-    /// Variant to show, in place of the most typical; 0 shows the stack as stated.
+    /// Number of the variant to show, in place of the most typical one; 0 shows the stack as stated.
     #[arg(long, value_name = "NUMBER")]
     pub(crate) variant: Option<u32>,
 }
@@ -140,16 +140,16 @@ pub(crate) struct RunArgs {
     /// in report.html, so that a reader of the report can change the stack and run it again.
     #[arg(long, requires = "out", value_name = "FILE")]
     pub(crate) with_engine: Option<PathBuf>,
-    /// Write the final places of all bodies of a cellar into this file, which must not exist. Another cellar can start
-    /// from these places: its start.file names this file.
+    /// Write the final places of all bodies of a cellar into this new file. Another cellar starts from these places if
+    /// its start.file names the file.
     #[arg(long, value_name = "FILE")]
     pub(crate) state: Option<PathBuf>,
-    /// Keep the result of every variant of a cellar in this folder. Variants whose results are there are not run
-    /// again, so work that was stopped can be continued.
+    /// Keep the result of every variant of a cellar in this folder. Variants whose results are already there are not
+    /// run again, so that stopped work can be continued.
     #[arg(long, value_name = "DIR")]
     pub(crate) keep: Option<PathBuf>,
     /// Run only this part of the variants of a cellar, such as 3/8 for the third of eight parts, and keep their
-    /// results; a run without this option then gathers the results of all parts.
+    /// results. A later run without this option combines the results of all parts.
     #[arg(long, requires = "keep", value_name = "PART/PARTS", conflicts_with_all = ["out", "state", "json"])]
     pub(crate) part: Option<PartName>,
     /// Draw the stack in the summary with ASCII characters only.
@@ -210,7 +210,7 @@ pub(crate) struct CheckArgs {
     /// which the stack falls.
     #[arg(long)]
     pub(crate) table: bool,
-    /// Write the plan of a cellar as a picture (SVG) into this file, which must not exist.
+    /// Write the plan of a cellar as a picture (SVG) into this new file.
     #[arg(long, value_name = "FILE")]
     pub(crate) plan: Option<PathBuf>,
     /// Print one JSON document in place of text.
@@ -221,13 +221,12 @@ pub(crate) struct CheckArgs {
 /// Arguments of `reproduce`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ReproduceArgs {
-    /// The record of the paper, `RSN995_NORTHR_PEL360.AT2` of the PEER database. Without it, the
-    /// bundled record shakes the six barrels, and results that depend on the motion are not
-    /// compared.
+    /// The record of the paper, `RSN995_NORTHR_PEL360.AT2` of the PEER database. Without it, the bundled record shakes
+    /// the six barrels, and results that depend on the ground motion are not compared.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
-    /// Leave out the studies, which take most of the time: the influence of each input, and contact
-    /// parameters changed by 10 %.
+    /// Leave out the studies, which take most of the time: the influence of each input, and the effect of a change of
+    /// the contact parameters by 10 %.
     #[arg(long)]
     pub(crate) no_studies: bool,
     #[command(flatten)]

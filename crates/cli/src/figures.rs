@@ -36,7 +36,7 @@ typed! {
     pub(crate) enum FormatName of Format {
         /// Vector graphics, for web pages and for editing.
         Svg = Self::Svg,
-        /// Pixels.
+        /// Pixel graphics.
         Png = Self::Png,
         /// Vector graphics, for typesetting.
         Pdf = Self::Pdf,

@@ -138,11 +138,11 @@ fn error_document(document: &ErrorDocument, json: bool) {
 }
 
 described! {
-    /// The reason why a command has no result.
+    /// Reason why a command has no result.
     pub(crate) struct ErrorDocument of error: &(&str, Option<&str>, Option<&Place>, u8) {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["error/1"] = "error/1",
-        /// Error message, with the causes.
+        /// Error message, with the causes of the error.
         error: String = error.0.to_owned(),
         /// Command or option that may help; null if no single command or option does.
         next: Option<String> = error.1.map(str::to_owned),

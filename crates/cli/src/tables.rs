@@ -23,8 +23,8 @@ pub(crate) struct TableArgs {
     /// for the provenance.
     #[arg(long)]
     pub(crate) xlsx: bool,
-    /// Write CSV files with decimal commas, and with semicolons between the columns, as spreadsheet programs of many
-    /// languages read them. This program reads only tables with decimal points.
+    /// Write CSV files with decimal commas and with semicolons between the columns, as spreadsheet programs in many
+    /// languages expect. This program itself reads only tables with decimal points.
     #[arg(long)]
     pub(crate) decimal_comma: bool,
 }

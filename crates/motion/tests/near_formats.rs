@@ -150,7 +150,10 @@ fn options(file: &str) -> ReadOptions {
 fn row(what: &str, file: &str, bytes: &[u8]) -> String {
     let known: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
     let said = match read(bytes, file, &options(file)) {
-        Ok(record) => format!("read: {} channel(s)", record.channels.len()),
+        Ok(record) => match record.channels.len() {
+            1 => "read: 1 channel".to_owned(),
+            count => format!("read: {count} channels"),
+        },
         Err(error) => {
             let text = format!(
                 "refused: expected {}, found {}; {}",

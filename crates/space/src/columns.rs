@@ -18,24 +18,24 @@ const COLUMNS: [(&str, ValueKind, &str); 5] = [
     (
         "debris_right",
         ValueKind::Integer,
-        "fallen barrels whose displacement from rest is mainly to the right",
+        "number of fallen barrels whose displacement from rest is mainly to the right",
     ),
     (
         "debris_left",
         ValueKind::Integer,
-        "fallen barrels whose displacement from rest is mainly to the left",
+        "number of fallen barrels whose displacement from rest is mainly to the left",
     ),
     (
         "debris_away",
         ValueKind::Integer,
-        "fallen barrels whose displacement from rest is mainly along the barrels, away from the \
-         viewer",
+        "number of fallen barrels whose displacement from rest is mainly along the barrels, away \
+         from the viewer",
     ),
     (
         "debris_near",
         ValueKind::Integer,
-        "fallen barrels whose displacement from rest is mainly along the barrels, toward the near \
-         side",
+        "number of fallen barrels whose displacement from rest is mainly along the barrels, toward \
+         the near side",
     ),
 ];
 

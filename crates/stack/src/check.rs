@@ -12,10 +12,10 @@ use crate::stand::{Standing, stand};
 use crate::stick::SoftStick;
 
 described! {
-    /// Result of the check of a sound scenario.
+    /// Result of the check of a valid scenario.
     #[derive(Clone, Debug)]
     pub struct Checked {
-        /// Name and version of the schema.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["check/1"],
         /// The scenario's title.
         pub title: String,
@@ -39,7 +39,7 @@ described! {
         pub warnings: Vec<String>,
         /// Hash of the scenario with every default written out.
         pub scenario_hash: String,
-        /// Result for the other plane, if the scenario has its stack in both planes.
+        /// Result for the other plane; null if the scenario has only one plane.
         pub other_plane: Option<Box<Checked>>,
     }
 

@@ -78,7 +78,7 @@ pub struct Work {
     pub steps: u64,
     /// Number of force evaluations.
     pub evaluations: u64,
-    /// Number of contact elements tested.
+    /// Number of contact elements tested in all evaluations.
     pub contact_evaluations: u64,
 }
 

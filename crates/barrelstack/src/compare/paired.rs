@@ -7,7 +7,8 @@ use super::Side;
 use crate::variants::LEVEL;
 
 described! {
-    /// Paired comparison of two runs in one plane or in three dimensions: the same variants under the same motions.
+    /// Comparison of two runs in one plane or in three dimensions: each variant of the first run is compared with the
+    /// same variant of the second run, under the same motion.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Paired {
         /// The plane of the model, or "spatial" for a three-dimensional model; null for a free scene.
@@ -24,11 +25,12 @@ described! {
         pub only_second: u32,
         /// Number of variants that collapse in neither run.
         pub neither: u32,
-        /// Number of further variants that have no verdict in at least one of the two runs.
+        /// Number of variants without a verdict in at least one of the two runs; the other counts do not include them.
         pub without_verdict: u32,
-        /// Share that collapses in the first run minus the share that collapses in the second.
+        /// Share of variants that collapse in the first run, minus the share that collapse in the second run. Only
+        /// variants with a verdict in both runs are counted.
         pub reduction: f64 as "1",
-        /// 95 % interval of the reduction (Newcombe 1998, for paired samples).
+        /// 95 % interval of `reduction` (Newcombe 1998, for paired samples).
         pub interval: [f64; 2] as "1",
     }
 }

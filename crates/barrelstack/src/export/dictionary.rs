@@ -28,10 +28,10 @@ const MEANINGS: [(&str, &str); 39] = [
     ("energy_potential", "potential energy of all bodies"),
     ("energy_elastic", "energy stored in the springs of all contacts"),
     ("energy_stick", "energy stored in the tangential springs of sticking contacts"),
-    ("energy_damped", "energy dissipated by the dampers of all contacts so far"),
-    ("energy_friction", "energy dissipated by friction so far"),
-    ("energy_viscous", "energy dissipated by viscous drag so far"),
-    ("energy_ground_work", "work done by the ground on the bodies so far"),
+    ("energy_damped", "energy dissipated so far by the dampers of all contacts"),
+    ("energy_friction", "energy dissipated so far by friction"),
+    ("energy_viscous", "energy dissipated so far by viscous drag"),
+    ("energy_ground_work", "work done so far by the ground on the bodies"),
     ("energy_residual", "error of the energy balance"),
     ("body", "name of the body"),
     ("x", "position of the boundary point at rest, to the right of the center of mass"),
@@ -40,7 +40,7 @@ const MEANINGS: [(&str, &str); 39] = [
         "coordinate",
         "position along the boundary: an angle on a round boundary, a length on a straight boundary",
     ),
-    ("length_of_boundary", "length of boundary on which the stress acts at rest"),
+    ("length_of_boundary", "length of boundary on which the stress at rest acts"),
     ("stress_at_rest", "normal stress at rest"),
     (
         "peak_stress_until_first_loss_of_seat",
@@ -70,11 +70,12 @@ const MEANINGS: [(&str, &str); 39] = [
     ("_angle", "rotation, counterclockwise"),
     (
         "_qw",
-        "real part of the quaternion from the frame of the body to the inertial frame of the ground before the motion",
+        "real part of the quaternion that rotates the frame of the body to the inertial frame of the ground before the \
+         motion",
     ),
-    ("_qx", "first imaginary part of the quaternion"),
-    ("_qy", "second imaginary part of the quaternion"),
-    ("_qz", "third imaginary part of the quaternion"),
+    ("_qx", "first imaginary part of the quaternion of the rotation"),
+    ("_qy", "second imaginary part of the quaternion of the rotation"),
+    ("_qz", "third imaginary part of the quaternion of the rotation"),
 ];
 
 /// Returns the name `columns.csv` and the contents of this file, which lists the file, name, unit and

@@ -115,7 +115,10 @@ impl Described for Devices {
             );
             at["type"] = json!(["number", "null"]);
             let element = json!({
-                "name": { "type": "string", "description": "The bodies that the element joins, and its position." },
+                "name": {
+                    "type": "string",
+                    "description": "Names of the bodies that the element joins, and the position of the element."
+                },
                 (format!("peak_{force}")): number("N", &format!("The {force} with the largest magnitude until the first loss of seat.")),
                 (format!("peak_{force}_at")): number("s", "Time of the largest value until the first loss of seat."),
                 (format!("peak_{force}_whole_run")): number("N", &format!("The {force} with the largest magnitude over the whole run.")),

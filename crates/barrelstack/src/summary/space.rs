@@ -13,7 +13,7 @@ described! {
     /// `y` along the barrels, `z` up. A value is null where an event did not happen or does not apply.
     #[derive(Clone, Debug)]
     pub struct SummaryInSpace {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["space/1"],
         /// Title of the scenario.
         pub title: String,
@@ -21,7 +21,7 @@ described! {
         pub variant: u32,
         /// Statistics of all variants; null where no variants were run.
         pub ensemble: Option<Spread>,
-        /// Number of runs that finished; null unless the variants were stopped early.
+        /// Number of finished runs; null if the variants were not stopped early.
         pub unfinished: Option<Unfinished>,
         /// Changes that would have kept the stack up; null if the stack stands or if no change was searched for.
         pub remedy: Option<Remedy>,
@@ -115,24 +115,27 @@ described! {
         pub drop: f64 as "m",
         /// Largest force on the body after its fall.
         pub fall_force: Option<f64> as "N",
-        /// Displacement x, y, z at the end, relative to the ground and measured from the position at rest.
+        /// Displacement x, y, z at the end of the run, relative to the ground and measured from the position at rest.
         pub moved: [f64; 3] as "m",
-        /// Position x, y, z of the center of mass at the end, relative to the initial position of the ground.
+        /// Position x, y, z of the center of mass at the end of the run, relative to the initial position of the
+        /// ground.
         pub position: [f64; 3] as "m",
-        /// Orientation of the principal axes at the end, as the quaternion w, x, y, z.
+        /// Orientation of the principal axes at the end of the run, as the quaternion w, x, y, z.
         pub orientation: [f64; 4] as "1",
-        /// Velocity x, y, z of the center of mass at the end, including the velocity of the ground.
+        /// Velocity x, y, z of the center of mass at the end of the run, including the velocity of the ground.
         pub velocity: [f64; 3] as "m/s",
-        /// Angular velocity about x, y, z at the end.
+        /// Angular velocity about x, y, z at the end of the run.
         pub spin: [f64; 3] as "rad/s",
         /// Largest horizontal displacement relative to the ground before the first loss of seat.
         pub peak_displacement: f64 as "m",
-        /// Largest horizontal displacement, in any direction, relative to the supports before the first loss of seat.
+        /// Largest horizontal displacement, in any direction, relative to the supports of the body, before the first
+        /// loss of seat.
         pub peak_slip: f64 as "m",
-        /// Largest displacement across the barrels relative to the supports before the first loss of seat.
+        /// Largest displacement across the barrels, relative to the supports of the body, before the first loss of
+        /// seat.
         pub peak_slip_across: f64 as "m",
-        /// Largest displacement along the barrels relative to the supports before the first loss of seat; may occur at
-        /// another time than the largest displacement across the barrels.
+        /// Largest displacement along the barrels, relative to the supports of the body, before the first loss of seat.
+        /// It may occur at another time than the largest displacement across the barrels.
         pub peak_slip_along: f64 as "m",
         /// Largest rise above the position at rest before the first loss of seat.
         pub peak_uplift: f64 as "m",
@@ -163,9 +166,9 @@ described! {
         pub end_time: f64 as "s",
         /// Reason for the end of the run.
         pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"],
-        /// Number of steps of settling.
+        /// Number of steps taken to find equilibrium.
         pub settle_steps: Option<u64>,
-        /// Wall-clock time, including all variants.
+        /// Wall-clock time of the run and of all its variants.
         pub wall_seconds: Option<f64> as "s",
     }
 }

@@ -27,20 +27,20 @@ described! {
         pub field: &'static str,
         /// Unit of the constant; "1" for a pure number.
         pub unit: &'static str,
-        /// Standard deviation of the logarithm of the constant; for a restitution, of the logarithm
-        /// of its damping ratio; for static friction, its largest excess over the stated value, as
-        /// a fraction.
+        /// Scatter of the constant: the standard deviation of its logarithm. For a restitution, it is the standard
+        /// deviation of the logarithm of the damping ratio; for static friction, the largest excess over the stated
+        /// value, as a fraction.
         pub dispersion: f64 as "1",
-        /// Share of collapses as a function of the constant, from its 5 % to its 95 % fractile,
-        /// averaged over all other constants.
+        /// Share of variants that collapse as a function of the constant, from the 5 % to the 95 % fractile of the
+        /// constant; the mean over all other constants.
         pub shares: Vec<ShareAt>,
         /// 95 % interval of the difference between the largest and the smallest value of `shares`.
         pub difference: [f64; 2] as "1",
         /// Total-effect index: fraction of the variance of the share that remains if all other
         /// constants are known.
         pub total: f64 as "1",
-        /// Average width of the range that the share would still have if this constant were measured
-        /// exactly.
+        /// Width of the 95 % range of the share of collapses if this constant were known exactly and all other
+        /// constants remained uncertain; the mean over the values of this constant.
         pub width_if_measured: f64 as "1",
     }
 

@@ -34,7 +34,7 @@ pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 const BATCH: usize = 8;
 
 described! {
-    /// The tried changes that would have kept the stack up.
+    /// Changes of a collapsed stack that were tried, and those that would have kept it up.
     #[derive(Clone, Debug, Default, PartialEq)]
     pub struct Remedy {
         /// Share of variants that must stand in every plane.

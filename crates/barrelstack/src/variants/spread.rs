@@ -18,17 +18,17 @@ described! {
     /// Statistics of all variants, without the nominal case.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Spread {
-        /// What the variants differ in: positions and masses ("imperfections"), uncertain
-        /// constants ("unknowns"), both, or neither.
+        /// Quantities that differ between the variants: positions and masses ("imperfections"), uncertain constants
+        /// ("unknowns"), both, or neither.
         pub kind: &'static str ["imperfections", "unknowns", "both", "neither"],
         /// Seed of the sequence that draws the variants.
         pub seed: u32,
         /// Number of variants with a verdict.
         pub variants: u32,
-        /// Number of variants that collapse, either while shaken or, before that, under their own
-        /// weight.
+        /// Number of variants that collapse, either under their own weight before they are shaken, or while they are
+        /// shaken.
         pub collapsed: u32,
-        /// Share of variants with a verdict that collapse; null if no variant has a verdict.
+        /// Share of variants that collapse, among those with a verdict; null if no variant has a verdict.
         pub share: Option<f64> as "1",
         /// Wilson's 95 % interval of the share that collapses, widened so that it holds regardless
         /// of whether the variants without a verdict stand or collapse.
@@ -57,8 +57,8 @@ described! {
         pub counted_for: Option<f64> as "s",
         /// Total number of barrels.
         pub barrels: usize,
-        /// Earliest time at which a standing variant ended before its motion did; null if no
-        /// variant was cut short.
+        /// Earliest time at which the run of a standing variant ended before its ground motion ended; null if there is
+        /// no such variant.
         pub standing_until: Option<f64> as "s",
         /// Number of variants in which the load on staves exceeds their stated capacity before any
         /// seat is lost.
@@ -81,9 +81,9 @@ described! {
         /// Number of the most typical run: the one that is most similar to all others in outcome,
         /// mode, time and fallen barrels, in all planes together; 0 is the nominal case.
         pub typical: u32,
-        /// Number of the least severe run.
+        /// Number of the run with the least severe outcome.
         pub gentlest: u32,
-        /// Number of the most severe run.
+        /// Number of the run with the most severe outcome.
         pub worst: u32,
     }
 

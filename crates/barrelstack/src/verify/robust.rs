@@ -15,8 +15,8 @@ described! {
         pub mode: bool,
         /// True if all repeats agree with the run on the first body that leaves its seat.
         pub first: bool,
-        /// Largest difference between the time of the first fall in the run and in a repeat; null
-        /// if no barrel falls in the run or in a repeat.
+        /// Largest difference between the time of the first fall of a barrel in the run and in a repeat; null if no
+        /// barrel falls in the run or in at least one of the repeats.
         pub first_fall_within: Option<f64> as "s",
         /// Smallest and largest number of barrels that fall, over the run and its repeats.
         pub barrels_fallen: [usize; 2],

@@ -15,7 +15,7 @@ use super::{Cases, Decision, Sensitivity};
 described! {
     /// Evaluation of a study. Intensities are in the SI unit of their measure.
     pub struct DecisionDocument of decision: &Decision {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["decision/1"] = "decision/1",
         /// Title of the study.
         pub title: String = decision.cases.title.clone(),
@@ -45,7 +45,7 @@ described! {
         pub ended_by_duration: u64 = decision.cases.endings.short,
         /// Number of cases that were ended by `run.duration` while the ground still moved.
         pub cut_while_the_ground_moved: u64 = decision.cases.endings.cut,
-        /// Number of cases in which something still moved when the time limit was reached.
+        /// Number of cases in which a body still moved when the time limit was reached.
         pub still_moving_at_the_end: u64 = decision.cases.endings.moving,
         /// Reason why no losses are given; null if losses are given.
         pub no_losses: Option<String> = decision.losses.as_ref().err().cloned(),
@@ -109,7 +109,8 @@ described! {
         pub monotone_p: Option<f64> as "1" = finite(curve.monotony.p),
         /// Ranges of intensity over which the fraction of failures decreases.
         pub falls: Vec<FallBetween> = curve.monotony.falls.iter().map(FallBetween::of).collect(),
-        /// Number of curves (each of one motion) on which the stack fails at one intensity and stands at a higher one.
+        /// Number of curves on which the stack fails at one intensity and stands at a higher intensity; each curve is
+        /// for one motion.
         pub returned: usize = curve.returned.len(),
     }
 
@@ -309,8 +310,8 @@ described! {
             site.lost.as_ref().map(|lost: &Lost| lost.burst.iter().map(YearlyRate::of).collect()),
         /// Wine lost per year, under the low, central and high assumptions about breakage.
         pub wine_lost_m3_per_year: Option<[f64; 3]> as "m3/year" = site.lost.as_ref().map(|lost| lost.wine),
-        /// Lower and upper cost of the barrels that burst per year and of their wine, under the central assumption
-        /// about breakage.
+        /// Lower and upper estimate of the annual cost of the barrels that burst and of their wine, under the central
+        /// assumption about breakage.
         pub money_lost_per_year: Option<[f64; 2]> as "US$/year" = site.lost.as_ref().map(|lost| lost.money),
         /// Contributions of ranges of intensity to the rate of collapse.
         pub contributions: Vec<RatePart> = site.contributions.iter().map(RatePart::of).collect(),

@@ -10,7 +10,7 @@ use crate::decision::{LimitCurve, bounds};
 described! {
     /// Probability of collapse of stacks by height, direction and strength of shaking.
     pub struct HeightsDocument of all: &Heights {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["heights/1"] = "heights/1",
         /// Name of the rack in the catalog.
         pub rack: String = all.request.rack.clone(),

@@ -7,14 +7,13 @@ use super::{Estimate, Ranked, Ranking, Shaking};
 described! {
     /// Protections of a stack, ranked by effect and cost.
     pub struct ProtectDocument of all: &Ranking {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["protect/1"] = "protect/1",
         /// Title of the scenario.
         pub title: String = all.request.scenario.title.clone(),
         /// Peak ground velocities to which every motion was scaled.
         pub velocities: Vec<f64> as "m/s" = all.request.shaking.levels().to_vec(),
-        /// Reference of the estimates: one event, in which all levels are equally likely, or one year at the
-        /// site.
+        /// Unit of the estimates: per event, in which all levels are equally likely, or per year at the site.
         pub per: &'static str ["event", "year"] = match all.request.shaking {
             Shaking::Levels(_) => "event",
             Shaking::Site(_) => "year",
@@ -37,8 +36,8 @@ described! {
         /// Name of the protection that saves the most barrels per dollar of its cost; null if no protection helps
         /// significantly.
         pub best: Option<String> = all.best().map(|one| one.protection.name.clone()),
-        /// Every protection that was tried, sorted by last round (the latest first) and then by the number of fallen
-        /// barrels.
+        /// Every protection that was tried. They are sorted by the last round in which they were run, the latest round
+        /// first, and then by the number of fallen barrels.
         pub protections: Vec<ProtectionRow> = all.all.iter().map(ProtectionRow::of).collect(),
         /// Protections that were not tried.
         pub not_tried: Vec<NotTried> = all.not_tried.iter().map(NotTried::of).collect(),

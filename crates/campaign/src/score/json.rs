@@ -8,7 +8,7 @@ use super::{Capacity, Scored, Sheet};
 described! {
     /// RockScore of a rack with its devices.
     pub struct ScoreDocument of sheet: &Sheet {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         pub schema: &'static str ["rockscore/1"] = "rockscore/1",
         /// Name and version of the protocol; only scores of the same protocol are comparable.
         pub protocol: String = sheet.protocol.name.clone(),
@@ -49,8 +49,8 @@ described! {
         pub direction: &'static str ["transverse", "longitudinal", "spatial"] = row.0.direction.name(),
         /// Peak ground velocity at which one stack in ten collapses; 0 if that velocity is below all levels.
         pub velocity: f64 as "m/s" = row.0.capacity.velocity(),
-        /// Source of the velocity: the fitted curve; the lower of the two levels between which the share of collapses
-        /// rises above one in ten; or an end of the range of levels.
+        /// Source of the velocity: the fitted curve, the lower of the two levels between which the share of collapses
+        /// rises above one in ten, or one end of the range of levels.
         pub found: &'static str ["curve", "between-levels", "above-all-levels", "below-all-levels"] =
             match row.0.capacity {
                 Capacity::Fitted(..) => "curve",

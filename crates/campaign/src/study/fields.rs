@@ -118,14 +118,14 @@ table! {
 }
 
 table! {
-    /// A factor: a field of the scenario that the study varies, with one of `values`, `range` and
-    /// `distribution`.
+    /// A factor: a field of the scenario that the study varies. Its values are stated by exactly one of the fields
+    /// `values`, `range` and `distribution`.
     static FACTOR = "factor";
     /// Path of the field, such as `interface.rack-ground.friction.coefficient`.
     field = Kind::Text, Default::Required;
     /// Paths of further fields that take the same value as `field`.
     also = Kind::Texts, Default::Nothing;
-    /// Name of the column of the factor.
+    /// Name of the column with the values of the factor.
     name = Kind::Text, Default::Derived("`field`");
     /// List of the values.
     values = Kind::Values, Default::Nothing;
@@ -171,8 +171,8 @@ table! {
     /// Number of cases in a chunk, the unit of work that is run and stored as a whole; in an incremental
     /// dynamic analysis, number of hunts.
     chunk = Kind::Integer(1, 100_000),
-        Default::Derived("64, doubled after every 512 chunks; 8 for stacks in space and for an incremental \
-            dynamic analysis");
+        Default::Derived("64, doubled after every 512 chunks; 8 for three-dimensional stacks and for an \
+            incremental dynamic analysis");
     by kind {
         /// Every combination of all values, levels and motions.
         "full-factorial" {}
@@ -218,7 +218,7 @@ table! {
             first = Kind::Value, Default::Required;
             /// First step by which the level is raised.
             step = Kind::Value, Default::Required;
-            /// Amount by which each step is larger than the previous one.
+            /// Amount by which each step is larger than the step before it.
             growth = Kind::Value, Default::Derived("half of `step`");
             /// Narrowing stops when the gap between the highest level at which the stack stood and the lowest level at
             /// which it collapsed is at most this fraction of the former level.

@@ -17,7 +17,7 @@ described! {
     /// An input on which every case of a study depends.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
     pub struct Common {
-        /// Name of the input, for use in a sentence.
+        /// Name of the input, as it appears in messages.
         pub what: String,
         /// Fingerprint of the input.
         pub hash: String,

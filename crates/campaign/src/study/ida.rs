@@ -13,7 +13,7 @@ pub struct Hunt {
     pub first: f64,
     /// First step by which the level is raised.
     pub step: f64,
-    /// Amount by which each step is larger than the previous one.
+    /// Amount by which each step is larger than the step before it.
     pub growth: f64,
     /// Narrowing stops when the gap between the highest level at which the stack stood and the lowest level at which it
     /// collapsed is at most this fraction of the former level.

@@ -20,12 +20,12 @@ pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
     match (spec.role, spec.name.as_str()) {
         (Role::Key, "case") => "number of the case in its study",
         (Role::Key, "id") => "unique identifier of the case, independent of the number of cases",
-        (Role::Key, _) => "chunk in which the case was run",
+        (Role::Key, _) => "number of the chunk in which the case was run",
         (Role::Factor, _) => "value of a varied field",
         (Role::Motion, "record") => "name of the motion",
         (Role::Motion, "level") => "intensity to which the motion was scaled",
         (Role::Motion, _) => "factor by which the motion was scaled",
-        (Role::Intensity, _) => "intensity measure of the motion as scaled",
+        (Role::Intensity, _) => "intensity measure of the scaled motion",
         (Role::Outcome | Role::Demand | Role::Run, name) => {
             ensemble::meaning(name).or_else(|| columns::meaning(name)).unwrap_or("")
         }

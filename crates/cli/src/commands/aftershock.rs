@@ -20,11 +20,11 @@ use crate::progress::Progress;
 pub(crate) struct AftershockArgs {
     /// A cellar: a file (TOML), the name of a built-in cellar, or - for standard input.
     scenario: String,
-    /// Strength of the aftershock: factor by which the motion of the cellar, or the record, is multiplied. Several
-    /// factors, such as 0.25,0.5,0.75, give the residual margin: each aftershock follows the same main shock.
+    /// Strength of the aftershock: factor by which the motion of the cellar, or the record, is multiplied. With several
+    /// factors, such as 0.25,0.5,0.75, each aftershock follows the same main shock.
     #[arg(long, value_name = "FACTOR", value_delimiter = ',', default_values_t = [0.5])]
     scale: Vec<f64>,
-    /// File of the aftershock, in place of the motion of the cellar.
+    /// File of the ground motion of the aftershock, in place of the motion of the cellar.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Change a value, such as stack.levels=5 or "motion.scale.pgv=60 cm/s"; may be repeated.

@@ -142,7 +142,7 @@ impl ChangeArgs {
 struct StiffnessArgs {
     /// The measurements (CSV).
     file: PathBuf,
-    /// Number of seats or contact nodes that share the force; k applies to a single one of them.
+    /// Number of seats or contact nodes that share the force; k applies to one seat or node.
     #[arg(long, visible_alias = "seats", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     nodes: u32,
     /// Stack that was tapped, in the plane in which it swayed: a scenario file (TOML), or the name
@@ -168,7 +168,7 @@ struct DropArgs {
     /// Stiffness k of one contact node, such as "9.8 kN/cm".
     #[arg(long, requires = "mass", value_name = "K")]
     stiffness: Option<String>,
-    /// Number of contact nodes that touch at the same time; k and c apply to a single node.
+    /// Number of contact nodes that touch at the same time; k and c apply to one node.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     nodes: u32,
     #[command(flatten)]
@@ -212,14 +212,16 @@ struct CollapseArgs {
     scenario: String,
     /// Observations: a table of tests (CSV), or statements on the share that fell in an earthquake (TOML).
     file: PathBuf,
-    /// Use this statement of the TOML file; may be repeated. Without it, all statements that state a share are used.
+    /// Use only the statement of the TOML file with this id; may be repeated. By default, all statements that state a
+    /// share are used.
     #[arg(long, value_name = "ID")]
     statement: Vec<String>,
     /// Parameters to find: k and c of barrel-rack (those of rack-ground change in proportion),
     /// mu-br (friction barrel-rack), mu-rg (friction rack-ground).
     #[arg(long, value_delimiter = ',', default_value = "k,c,mu-br,mu-rg", value_name = "NAMES")]
     fit: Vec<Fitted>,
-    /// Range of the parameters: the values of the scenario, divided and multiplied by this factor.
+    /// Range of each parameter: from the value in the scenario divided by this factor to that value multiplied by this
+    /// factor.
     #[arg(long, default_value_t = Settings::default().within, value_name = "FACTOR")]
     within: f64,
     /// Standard deviation of observed times, such as "0.05 s".

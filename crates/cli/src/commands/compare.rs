@@ -32,10 +32,10 @@ Examples:
 #[command(after_help = EXAMPLES)]
 #[expect(clippy::struct_excessive_bools, reason = "one field per switch")]
 pub(crate) struct CompareArgs {
-    /// Scenario files (TOML) or names of built-in scenarios; alternatively, cellars.
+    /// Scenario files (TOML) or names of built-in scenarios; or files or names of cellars.
     #[arg(value_name = "SCENARIO", required = true)]
     scenarios: Vec<String>,
-    /// Add a run of the first scenario with this value changed; may be repeated.
+    /// Add a run of the first scenario in which this value is changed; may be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     against: Vec<String>,
     /// Add runs of the first cellar with the usual changes, as far as they fit: wider spacing, all levels strapped
@@ -48,12 +48,12 @@ pub(crate) struct CompareArgs {
     /// File of the ground motion of all runs, in place of the motions that the scenarios state.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Number of variants of each stack or cellar to run, in place of imperfections.variants; 0 runs
-    /// them only as stated.
+    /// Number of variants of each stack or cellar to run, in place of imperfections.variants; 0 runs only the stacks or
+    /// cellars as stated.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
     pub(super) variants: Option<u32>,
-    /// Name of a run, in place of a description of its differences; may be repeated, in the order
-    /// of the runs.
+    /// Name of a run, in place of a description of its differences; to name several runs, repeat this option in their
+    /// order.
     #[arg(long, value_name = "WORDS")]
     pub(super) label: Vec<String>,
     /// Folder for report.html, report.md and figures/, for cellars also layouts.csv and

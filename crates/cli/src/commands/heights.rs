@@ -31,10 +31,10 @@ pub(crate) struct HeightsArgs {
     /// Number of synthetic motions in addition to the bundled record.
     #[arg(long, value_name = "NUMBER", default_value_t = 22, value_parser = clap::value_parser!(u32).range(0..=10_000))]
     synthetic: u32,
-    /// Seed of motions and friction.
+    /// Seed of the random motions and the random friction.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u32,
-    /// Folder for the page and its studies; run the command again to continue after a stop.
+    /// Folder for the page and its studies; to continue after a stop, run the command again.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-heights")]
     out: PathBuf,
     #[command(flatten)]

@@ -30,20 +30,20 @@ pub(crate) struct ProtectArgs {
     /// Folder of recorded motions. All of them are used, in place of the bundled record and synthetic motions.
     #[arg(long, value_name = "DIR")]
     motions: Option<PathBuf>,
-    /// Maximum cost of a protection for a stack (US$).
+    /// Maximum cost of the protection of one stack (US$).
     #[arg(long, value_name = "NUMBER")]
     budget: Option<f64>,
     /// Number of motions per round, if no folder of motions is given.
     #[arg(long, value_name = "NUMBER", default_value_t = 12, value_parser = clap::value_parser!(u32).range(4..=1000))]
     count: u32,
-    /// Number of rounds: the first round evaluates all protections, and each further round evaluates the better half of
-    /// those in the previous round.
+    /// Number of rounds. The first round evaluates all protections; each further round evaluates the better half of the
+    /// protections of the round before.
     #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=12))]
     rounds: u32,
-    /// Seed of motions and friction.
+    /// Seed of the random motions and the random friction.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u32,
-    /// Folder for the page and its studies; run the command again to continue after a stop.
+    /// Folder for the page and its studies; to continue after a stop, run the command again.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-protect")]
     out: PathBuf,
     #[command(flatten)]

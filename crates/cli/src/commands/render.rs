@@ -34,7 +34,7 @@ pub(crate) struct RenderArgs {
     paper: PaperName,
     #[command(flatten)]
     language: LanguageArgs,
-    /// Pictures and ParaView time steps per second of the run; animations show at most 50.
+    /// Pictures and ParaView time steps per second of the run; animations have at most 50 pictures per second.
     #[arg(long, value_name = "HZ", default_value = "20", value_parser = rate)]
     rate: f64,
     /// Start (s) of the interval to render.

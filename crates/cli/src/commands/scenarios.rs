@@ -46,7 +46,7 @@ fn shown(name: &str, resolved: bool) -> anyhow::Result<String> {
 described! {
     /// The built-in scenarios.
     pub(crate) struct ScenarioList {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["scenarios/1"],
         /// The built-in scenarios.
         scenarios: Vec<Listed>,

@@ -76,7 +76,7 @@ struct RunArgs {
     /// continued.
     #[arg(long, value_name = "DIR", required = true)]
     out: Option<PathBuf>,
-    /// Number of threads; by default, one per core. Results do not depend on the number of threads.
+    /// Number of threads; by default, one per core. The results do not depend on this number.
     #[arg(long, value_name = "NUMBER")]
     threads: Option<NonZero<usize>>,
     #[command(flatten)]
@@ -130,7 +130,7 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// Run one chunk and write its shard; if the shard exists, nothing is done.
+    /// Run one chunk of cases and write its results (a shard); if the shard exists, nothing is done.
     RunChunk(ChunkArgs),
     /// Report the progress of a study.
     Status(FolderArgs),
@@ -144,7 +144,7 @@ enum Action {
     },
     /// Write the page: fragility, losses, sensitivities and, with a hazard curve, annual rates.
     Report(report::ReportArgs),
-    /// Export fragility and loss for OpenQuake and Pelicun.
+    /// Export fragility curves and losses for OpenQuake and Pelicun.
     Export(export::ExportArgs),
     /// Write job files that run all chunks with a scheduler.
     Emit(emit::EmitArgs),
@@ -231,7 +231,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 described! {
     /// Plan of a study.
     pub(crate) struct StudyPlan of plan: &(&Study, Following) {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["study-plan/1"] = "study-plan/1",
         /// Title of the study.
         title: String = plan.0.title.clone(),
@@ -265,7 +265,7 @@ described! {
 
     /// Progress of a study.
     pub(crate) struct StudyStatus of status: &study::Status {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["study-status/1"] = "study-status/1",
         /// Provenance of the folder.
         provenance: study::Provenance = status.provenance.clone(),

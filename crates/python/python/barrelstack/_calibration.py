@@ -250,7 +250,8 @@ class Calibration(Page):
         fit
             As for :meth:`response`.
         within
-            Range of the parameters: the values of the scenario, divided and multiplied by this factor.
+            Range of each parameter: from the value in the scenario divided by this factor to that value multiplied by
+            this factor.
         timing, placement
             Standard deviations, with units, of observed times and of the positions of bodies.
         simulations

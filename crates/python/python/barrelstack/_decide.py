@@ -19,7 +19,7 @@ Path = str | os.PathLike[str]
 
 
 class Difference(NamedTuple):
-    """An input that is not equal in all runs.
+    """An input whose value is not the same in all runs.
 
     Examples
     --------
@@ -157,7 +157,7 @@ def heights(
     synthetic
         Number of synthetic motions in addition to the bundled record.
     seed
-        Seed of motions and friction.
+        Seed of the random motions and the random friction.
     highest
         Number of levels of the highest stack, from 2 to 6.
     space
@@ -214,8 +214,8 @@ class Protections(Page):
 
     @property
     def table(self) -> Table:
-        """One row for every protection, in the order of the page. The columns are the cost for a stack (US$, lower and
-        upper); the probability of collapse (1, or 1/year at a site), the barrels fallen and the barrels saved, each
+        """One row for every protection, in the order of the page. The columns are the cost for one stack (US$, lower
+        and upper); the probability of collapse (1, or 1/year at a site), the barrels fallen and the barrels saved, each
         with its 95 % interval; and the 95 % range of the probability over the uncertain constants of the seats. The
         last two columns are shares (1) of the draws of these constants: those in which fewer barrels fall than without
         a protection, and those in which fewer barrels fall than with the protection in the next row.
@@ -292,12 +292,12 @@ def protect(
     count
         Number of motions per round, if no motions are given.
     rounds
-        Number of rounds: the first round evaluates all protections, and each further round evaluates the better half of
-        those in the previous round.
+        Number of rounds. The first round evaluates all protections; each further round evaluates the better half of the
+        protections of the round before.
     budget
-        Upper limit of the cost of a protection for a stack (US$).
+        Maximum cost of the protection of one stack (US$).
     seed
-        Seed of motions and friction.
+        Seed of the random motions and the random friction.
     progress
         As for :meth:`Scenario.run`.
 

@@ -192,13 +192,13 @@ def select(
     spectrum
         Spectrum of a record to match: ``"rotd50"``, or a component such as ``"h1"``.
     scale
-        Smallest and largest scale factor.
+        Range of permitted scale factors.
     events
         The earthquake of each record, in place of that in its header.
     most_of_event
         Maximum number of records of one earthquake.
     seed
-        Seed of the simulated spectra.
+        Seed of the random spectra that are drawn from the target.
 
     Returns
     -------

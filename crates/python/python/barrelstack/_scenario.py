@@ -475,7 +475,7 @@ class Scenario:
             return self.with_record(record).run_in_space(
                 None, variants, progress, variant=variant, remedy=remedy, verify=verify
             )
-        with reporting(progress, f"run of {self.title!r} in space") as report:
+        with reporting(progress, f"three-dimensional run of {self.title!r}") as report:
             run = SpatialRun(self._shaken.run_in_space(variants, variant, remedy, verify, report), self.to_toml())
         warn(run.warnings)
         return run

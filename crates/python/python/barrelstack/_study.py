@@ -356,7 +356,7 @@ class Study:
         folder
             Folder for the results: new, empty, or with results of this study, which is then continued.
         workers
-            Number of threads; by default, one per core. Results do not depend on the number of threads.
+            Number of threads; by default, one per core. The results do not depend on this number.
         progress
             As for :meth:`Scenario.run`.
 

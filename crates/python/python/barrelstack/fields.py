@@ -76,23 +76,25 @@ class BarrelFields(TypedDict, total=False):
     base: Literal["bordeaux-225", "burgundy-228", "hogshead-300", "puncheon-500"]
     """Catalog barrel on which this barrel is based. Default: bordeaux-225."""
     bilge_diameter: Quantity
-    """Outer diameter at the bilge, the widest part. Default: the value of the catalog."""
+    """Outer diameter of the barrel at the bilge, its widest part. Default: the value of the catalog."""
     capacity: Quantity
-    """Nominal volume. Default: the value of the catalog."""
+    """Nominal volume of the barrel. Default: the value of the catalog."""
     empty_mass: Quantity
-    """Mass of wood and hoops. Default: the value of the catalog."""
+    """Mass of the wood and hoops of the barrel. Default: the value of the catalog."""
     fill: Literal["full-fluid", "full-frozen", "part", "empty"]
-    """Contents, and whether they rotate with the barrel. Default: full-fluid."""
+    """Contents of the barrel, and whether they rotate with it. Default: full-fluid."""
     filled: Union[float, Quantity]
-    """Filled fraction of the capacity, for barrels whose `fill` is set to "part" here or in an override. Default:
-    0.9.
+    """Fraction of the capacity that is filled, for barrels whose `fill` is "part", here or in an override.
+    Default: 0.9.
     """
     head_diameter: Quantity
-    """Outer diameter at the heads. Default: the value of the catalog."""
+    """Outer diameter of the barrel at the heads. Default: the value of the catalog."""
     length: Quantity
-    """Length over the chimes. Default: the value of the catalog."""
+    """Overall length of the barrel, over the chimes. Default: the value of the catalog."""
     mass: Quantity
-    """Mass of wood and contents. Default: the empty mass plus 990 kg/m^3 times the filled part of the capacity."""
+    """Mass of the barrel with its contents. Default: the empty mass plus 990 kg/m^3 times the filled part of the
+    capacity.
+    """
     section_diameter: Quantity
     """Diameter of the circle that represents the barrel in the plane across the barrels. Default: the diameter of
     the barrel above the rails of the rack.
@@ -130,12 +132,12 @@ class BodyFields(TypedDict, total=False):
     Default: the name.
     """
     mass: Quantity
-    """Mass."""
+    """Mass of the body."""
     name: str
     """Unique name."""
     nodes: Union[Literal["corners", "rolling", "exact"], "NodesFields"]
-    """Contact nodes. Default: `rolling` for a circle, `corners` for straight sides, otherwise nodes 1 cm apart;
-    must be given if there is no shape.
+    """Contact nodes on the boundary. Default: `rolling` for a circle, `corners` for straight sides, otherwise
+    nodes 1 cm apart; must be given if there is no shape.
     """
     position: list[Quantity]
     """Initial position of the reference point of the shape."""
@@ -146,7 +148,7 @@ class BodyFields(TypedDict, total=False):
     velocity: list[Quantity]
     """Initial velocity of the center of mass. Default: ["0 m/s", "0 m/s"]."""
     viscous: "ViscousFields"
-    """Viscous drag."""
+    """Viscous drag on the body."""
 
 
 class BodyInSpaceFields(TypedDict, total=False):
@@ -173,8 +175,8 @@ class BodyInSpaceFields(TypedDict, total=False):
     Default: the name.
     """
     mass: Quantity
-    """Mass. Default: `density` times the volume of the solid; a body that is not fixed to the ground needs a mass
-    or a density.
+    """Mass of the body. Default: `density` times the volume of the solid; a body that is not fixed to the ground
+    needs a mass or a density.
     """
     name: str
     """Unique name."""
@@ -185,7 +187,7 @@ class BodyInSpaceFields(TypedDict, total=False):
     position: list[Quantity]
     """Initial position of the reference point of the solid."""
     solid: "SolidFields"
-    """Contact geometry."""
+    """Contact geometry of the body."""
     spin: list[Quantity]
     """Initial angular velocity about the fixed axes x, y and z, each counterclockwise. Default: ["0 rad/s", "0
     rad/s", "0 rad/s"].
@@ -193,7 +195,7 @@ class BodyInSpaceFields(TypedDict, total=False):
     velocity: list[Quantity]
     """Initial velocity of the center of mass. Default: ["0 m/s", "0 m/s", "0 m/s"]."""
     viscous: "ViscousInSpaceFields"
-    """Viscous drag."""
+    """Viscous drag on the body."""
 
 
 class BoundaryFields(TypedDict, total=False):
@@ -202,8 +204,8 @@ class BoundaryFields(TypedDict, total=False):
     kind: str
     """Kind by which interfaces refer to the boundary."""
     nodes: Union[Literal["corners", "rolling", "exact"], "NodesFields"]
-    """Contact nodes. Default: `rolling` for a circle, `corners` for straight sides, otherwise nodes 1 cm apart;
-    must be given if there is no shape.
+    """Contact nodes on the boundary. Default: `rolling` for a circle, `corners` for straight sides, otherwise
+    nodes 1 cm apart; must be given if there is no shape.
     """
     shape: "ShapeFields"
     """Outline that other bodies touch, relative to the reference point of the body's shape; if not given, the
@@ -221,7 +223,7 @@ class ChockFields(TypedDict, total=False):
     is an assumption. Default: 55 deg.
     """
     gap: Quantity
-    """Clearance between a chock and its barrel: an assumption. Default: 5 mm."""
+    """Clearance between a chock and its barrel. The default is an assumption. Default: 5 mm."""
     levels: int
     """Number of levels with chocks, counted from the top; 0 for none. Default: 0."""
 
@@ -294,10 +296,10 @@ class FreeInterfaceFields(TypedDict, total=False):
     not matter.
     """
     damping: Quantity
-    """Damping c, in N s/m per seat or node, or in N s/m^2 per length. Default: in a stack: with constants per
-    seat, derived from the restitution that the catalog gives for the seats of the rack; with constants per
-    node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the
-    elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
+    """Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary. Default: in a stack: with
+    constants per seat, derived from the restitution that the catalog gives for the seats of the rack; with
+    constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping
+    force to the elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
     `reference_speed` are given.
     """
     friction: "FrictionFields"
@@ -316,10 +318,10 @@ class FreeInterfaceFields(TypedDict, total=False):
     Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in
-    N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the catalog gives
-    for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9
-    N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the
+    exponent 1.5 in N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the
+    catalog gives for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node,
+    1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     within_groups: bool
     """True if the interface also acts between bodies of the same `group`. Default: true."""
@@ -357,7 +359,7 @@ class GroundFields(TypedDict, total=False):
     kind: str
     """Name by which interfaces and elements refer to the ground. Default: ground."""
     slope: Quantity
-    """Slope, positive when it rises to the right. Default: 0 deg."""
+    """Slope of the ground, positive if it rises to the right. Default: 0 deg."""
 
 
 class GroundInSpaceFields(TypedDict, total=False):
@@ -366,7 +368,7 @@ class GroundInSpaceFields(TypedDict, total=False):
     kind: str
     """Name by which interfaces refer to the ground. Default: ground."""
     slope: Quantity
-    """Slope, positive if it rises to the right, along x. Default: 0 deg."""
+    """Slope of the ground along x, positive if it rises to the right. Default: 0 deg."""
 
 
 class ImpactFields(TypedDict, total=False):
@@ -375,10 +377,10 @@ class ImpactFields(TypedDict, total=False):
     basis: Literal["node", "length", "seat"]
     """Unit for which stiffness and damping are stated: one contact node, or one meter of boundary. Default: node."""
     damping: Quantity
-    """Damping c, in N s/m per seat or node, or in N s/m^2 per length. Default: in a stack: with constants per
-    seat, derived from the restitution that the catalog gives for the seats of the rack; with constants per
-    node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the
-    elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
+    """Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary. Default: in a stack: with
+    constants per seat, derived from the restitution that the catalog gives for the seats of the rack; with
+    constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping
+    force to the elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
     `reference_speed` are given.
     """
     friction: "FrictionFields"
@@ -397,10 +399,10 @@ class ImpactFields(TypedDict, total=False):
     Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in
-    N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the catalog gives
-    for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9
-    N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the
+    exponent 1.5 in N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the
+    catalog gives for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node,
+    1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
@@ -434,8 +436,8 @@ class ImperfectionsFields(TypedDict, total=False):
     Default: 1.
     """
     sign: bool
-    """True to reverse the motion for half of the variants, as if these stacks faced the opposite direction.
-    Default: false.
+    """True to mirror the stack left to right in half of the variants, which are chosen at random; false to mirror
+    no variant. Default: false.
     """
     until: Literal["rest", "verdict", "duration"]
     """Criterion that ends a variant if `run.until` is "rest". With "verdict", a variant ends 2 s after its first
@@ -457,10 +459,10 @@ class InterfaceFields(TypedDict, total=False):
     boundary. Default: seat.
     """
     damping: Quantity
-    """Damping c, in N s/m per seat or node, or in N s/m^2 per length. Default: in a stack: with constants per
-    seat, derived from the restitution that the catalog gives for the seats of the rack; with constants per
-    node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the
-    elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
+    """Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary. Default: in a stack: with
+    constants per seat, derived from the restitution that the catalog gives for the seats of the rack; with
+    constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping
+    force to the elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
     `reference_speed` are given.
     """
     friction: "FrictionFields"
@@ -479,10 +481,10 @@ class InterfaceFields(TypedDict, total=False):
     Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in
-    N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the catalog gives
-    for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9
-    N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the
+    exponent 1.5 in N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the
+    catalog gives for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node,
+    1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
@@ -515,8 +517,8 @@ class IsolatorFields(TypedDict, total=False):
     """
 
     bearing_stiffness: Quantity
-    """Stiffness of the bearings at one end of a platform: an assumption for steel balls on a steel plate. Default:
-    10 MN/m.
+    """Stiffness of the bearings at one end of a platform. The default is an assumption for steel balls on a steel
+    plate. Default: 10 MN/m.
     """
     dish_radius: Quantity
     """Radius of the dishes, which is the length of the equivalent pendulum; not used on a flat path. The default
@@ -527,7 +529,7 @@ class IsolatorFields(TypedDict, total=False):
     sheets, 0.6 if seized. Default: 0.01.
     """
     mass: Quantity
-    """Mass of a platform: an assumption. Default: 60 kg."""
+    """Mass of a platform. The default is an assumption. Default: 60 kg."""
     path: Literal["none", "flat", "dish"]
     """Shape of the path on which the platform moves. Default: none."""
     recentring: Quantity
@@ -535,9 +537,9 @@ class IsolatorFields(TypedDict, total=False):
     stop_damping: Quantity
     """Damping of a stop, which acts on approach only. The default is an assumption. Default: 5 kN s/m."""
     stop_stiffness: Quantity
-    """Stiffness of a stop: an assumption. Default: 500 kN/m."""
+    """Stiffness of a stop. The default is an assumption. Default: 500 kN/m."""
     stroke: Quantity
-    """Stroke of the platform to either side before it meets a stop: an assumption. Default: 20 cm."""
+    """Stroke of the platform to either side before it meets a stop. The default is an assumption. Default: 20 cm."""
 
 
 class LidFields(TypedDict, total=False):
@@ -550,11 +552,13 @@ class LidFields(TypedDict, total=False):
     kN s/m.
     """
     gap: Quantity
-    """Rise of a barrel from its position at rest before it touches its lid: an assumption. Default: 1 cm."""
+    """Rise of a barrel from its position at rest before it touches its lid. The default is an assumption. Default:
+    1 cm.
+    """
     levels: int
     """Number of levels with lids, counted from the top; 0 for none. Default: 0."""
     stiffness: Quantity
-    """Stiffness of one lid (force per displacement): an assumption. Default: 500 kN/m."""
+    """Stiffness of one lid (force per displacement). The default is an assumption. Default: 500 kN/m."""
     strength: Quantity
     """Force above which a lid breaks permanently; if not given, lids never break."""
 
@@ -569,7 +573,7 @@ class MotionFields(TypedDict, total=False):
     component.
     """
     none: bool
-    """True for ground at rest."""
+    """True if the ground stays at rest."""
     obtain: str
     """Where to get the record, shown to users who do not have it."""
     processing: Literal["default", "none"]
@@ -581,13 +585,13 @@ class MotionFields(TypedDict, total=False):
     scale: "ScaleFields"
     """Scaling of the motion. Default: factor 1."""
     sensitivity: Union[float, Quantity]
-    """Counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
+    """Sensitivity in counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
     sequence: list["ShockFields"]
     """Successive shocks of a cellar, instead of all other fields of `[motion]`: each shock is described by the
     same fields, and starts with the bodies at rest where the previous shock left them.
     """
     similitude: Union[float, Quantity]
-    """Length scale of Froude similitude applied to the motion alone. Default: 1.0."""
+    """Length scale of a Froude similitude that is applied only to the motion. Default: 1.0."""
     sine: "SineFields"
     """A harmonic motion."""
     time_step: Quantity
@@ -595,7 +599,7 @@ class MotionFields(TypedDict, total=False):
     unit: str
     """Unit of acceleration, only for a file that does not state its unit. Default: the unit of the file."""
     vertical: Union[str, Literal[False]]
-    """Vertical component of the same record, or false."""
+    """Vertical component of the same record; false for no vertical motion."""
     vertical_record: str
     """File of the vertical motion, relative to the scenario file."""
 
@@ -604,9 +608,11 @@ class NodeFields(TypedDict, total=False):
     """A contact node at a chosen point."""
 
     at: list[Quantity]
-    """Position in the body, relative to the reference point of the shape."""
+    """Position of the node in the body, relative to the reference point of the shape."""
     tributary_length: Quantity
-    """Length of boundary that the node represents, for laws per meter of boundary. Default: 1 cm."""
+    """Length of boundary that the node represents; used if constants are stated per meter of boundary. Default: 1
+    cm.
+    """
 
 
 class NodesFields(TypedDict, total=False):
@@ -617,8 +623,8 @@ class NodesFields(TypedDict, total=False):
     list: list["NodeFields"]
     """Nodes at chosen points."""
     rule: Literal["corners", "rolling", "exact"]
-    """Nodes at the corners, one node at the deepest point of a circle, or exact contact. If both bodies have exact
-    contact, their convex outlines touch each other at their deepest points.
+    """Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. If
+    both bodies have exact contact, their convex outlines touch each other at their deepest points.
     """
     spacing: Quantity
     """Largest distance between nodes along the boundary."""
@@ -634,15 +640,15 @@ class OutcomeFields(TypedDict, total=False):
     overturning_angle: Quantity
     """The stack counts as overturned if its bottom rack is inclined by more than this angle. Default: 30 deg."""
     rack_slide_ratio: Union[float, Quantity]
-    """Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left the
-    barrels. Across the barrels, the reach ends where friction cannot hold the rack on the curved sides of the
-    barrels; along the barrels, it ends where the rail of the rack passes the ends of the barrels. Default: 1.0.
+    """A rack has left the barrels below when its displacement on them exceeds this fraction of its reach. Across
+    the barrels, the reach ends where friction cannot hold the rack on the curved sides of the barrels; along
+    the barrels, it ends where the rail of the rack passes the ends of the barrels. Default: 1.0.
     """
     rocking_angle: Quantity
     """A level counts as rocked over if its rack is inclined by more than this angle. Default: 20 deg."""
     seat_loss_ratio: Union[float, Quantity]
-    """Distance of the center of a barrel from its position in the rack, in barrel radii, beyond which the barrel
-    has lost its seat. Default: 0.5.
+    """A barrel has lost its seat when the distance of its center from its position in the rack exceeds this number
+    of barrel radii. Default: 0.5.
     """
 
 
@@ -650,27 +656,29 @@ class OverrideFields(TypedDict, total=False):
     """A body of the stack that differs from the others."""
 
     column: int
-    """Column, 1 at the left before mirroring. The columns of racks and those of barrels are numbered separately.
-    In both planes or in three dimensions, columns are counted across the barrels. Default: every column of the
-    level.
+    """Number of the column; 1 is at the left of a stack that is not mirrored. The columns of racks and those of
+    barrels are numbered separately. In both planes or in three dimensions, columns are counted across the
+    barrels. Default: every column of the level.
     """
     fill: Literal["full-fluid", "full-frozen", "part", "empty"]
-    """Contents of the barrel, instead of the regular contents; for barrels only."""
+    """Contents of this barrel, which replace the contents that apply to other barrels."""
     kind: Literal["barrel", "rack"]
     """Kind of body. Default: barrel."""
     level: int
     """Level, 1 at the bottom."""
     mass: Quantity
-    """Mass of the body, instead of the regular mass."""
+    """Mass of this body; it replaces the mass that applies to other bodies of its kind."""
     offset_x: Quantity
-    """Displacement from the regular position, positive to the right before mirroring. Default: 0 m."""
+    """Displacement of the body from its regular position, positive to the right in a stack that is not mirrored.
+    Default: 0 m.
+    """
     offset_y: Quantity
-    """Displacement from the regular position along the barrels, positive away from the viewer; in three dimensions
-    only. Default: 0 m.
+    """Displacement of the body from its regular position along the barrels, positive away from the viewer; in
+    three dimensions only. Default: 0 m.
     """
     row: int
-    """Row along the barrels in a three-dimensional model, 1 nearest to the viewer. The rows of racks and those of
-    barrels are numbered separately. Default: every row.
+    """Number of the row along the barrels in a three-dimensional model; 1 is nearest to the viewer. The rows of
+    racks and those of barrels are numbered separately. Default: every row.
     """
 
 
@@ -684,7 +692,7 @@ class PadFields(TypedDict, total=False):
     value for rubber. Default: 5 kN s/m.
     """
     friction: Union[float, Quantity]
-    """Friction coefficient of wood on pads: an assumption. Default: 0.6."""
+    """Friction coefficient of wood on pads. The default is an assumption. Default: 0.6."""
     stiffness: Quantity
     """Stiffness of the pad at one support of a cradle; if not given, there are no pads."""
 
@@ -715,13 +723,13 @@ class PartShapeFields(TypedDict, total=False):
     vertices: list[list[Quantity]]
     """Corners in order around the polygon; sides must not cross."""
     half_angle: Quantity
-    """Half the angle that the trough spans, from its lowest point."""
+    """Half the angle that the trough spans: the angle from its lowest point to its edge."""
     bilge_diameter: Quantity
-    """Diameter at the middle."""
+    """Diameter of the barrel at its middle."""
     head_diameter: Quantity
-    """Diameter at the ends."""
+    """Diameter of the barrel at its ends."""
     length: Quantity
-    """Length."""
+    """Length of the barrel."""
 
 
 class PartSolidFields(TypedDict, total=False):
@@ -731,24 +739,24 @@ class PartSolidFields(TypedDict, total=False):
     """Radius."""
     type: Union[Literal["ball"], Literal["capsule"], Literal["block"], Literal["barrel"]]
     length: Quantity
-    """Length, including both ends. Or: Length."""
+    """Length of the capsule, including both ends. Or: Length of the barrel."""
     rounding: Quantity
     """Radius of the rounded edges; the penetration at a contact must stay below this radius. Default: 5 mm."""
     sides: list[Quantity]
     """Side lengths along local x, y and z."""
     bilge_diameter: Quantity
-    """Diameter at the middle."""
+    """Diameter of the barrel at its middle."""
     chime_radius: Quantity
-    """Radius of the chime, the rounded rim between staves and head. Default: 10 mm."""
+    """Radius of the chime, the rounded rim between the staves and a head. Default: 10 mm."""
     head_diameter: Quantity
-    """Diameter at the ends."""
+    """Diameter of the barrel at its ends."""
 
 
 class PulseFields(TypedDict, total=False):
     """A pulse."""
 
     amplitude: Quantity
-    """Peak acceleration or peak velocity, according to its unit."""
+    """Peak acceleration or peak velocity; the unit determines which of them."""
     direction: Literal["horizontal", "vertical"]
     """Direction of the motion. Default: horizontal."""
     frequency: Quantity
@@ -763,7 +771,7 @@ class PulseFields(TypedDict, total=False):
     the pulse; greater than 1.
     """
     phase: Quantity
-    """Phase. Default: 0 rad."""
+    """Phase angle of the wave. Default: 0 rad."""
     cycles: int
     """Number of cycles. Default: 1."""
 
@@ -777,7 +785,7 @@ class RackFields(TypedDict, total=False):
     """Number of barrels end to end on one rack, along the barrels. Default: the value of the catalog."""
     base: Union[Literal["two-barrel"], Literal["two-barrel-feet"], Literal["single-bar"], Literal["four-barrel"], Literal["rack-on-rack"], Literal["two-barrel-inclined"], Literal["candia-2008"]]
     beam_height: Quantity
-    """Height of the beams, not including feet. Default: the value of the catalog."""
+    """Height of the beams of the rack, without its feet. Default: the value of the catalog."""
     clearance: Quantity
     """Height of the lowest point of a carried barrel above the underside of the rack. Default: the value of the
     catalog.
@@ -790,10 +798,10 @@ class RackFields(TypedDict, total=False):
     cradle: Union[Literal["supports", "arc"], "CradleFields"]
     """Cradle in which the rack carries a barrel. Default: the value of the catalog."""
     foot_half_length: Quantity
-    """Half the length of a foot. Default: the value of the catalog."""
+    """Half the length of one foot of the rack. Default: the value of the catalog."""
     foot_height: Quantity
-    """Height of the feet under the beams, one over each barrel below; 0 for straight tubes without feet. Default:
-    the value of the catalog.
+    """Height of the feet under the beams, with one foot over each barrel below; 0 for straight tubes without feet.
+    Default: the value of the catalog.
     """
     incline: Quantity
     """Inclination of the barrels along their axes, positive if the rails raise the right end. Default: the value
@@ -812,11 +820,11 @@ class RackFields(TypedDict, total=False):
     rail_width: Quantity
     """Width of one rail, along the axis of the barrel. Default: the value of the catalog."""
     seat_stroke: Quantity
-    """Penetration of a seat beyond which the impact law of the two bodies also acts. Default: the value of the
-    catalog.
+    """Penetration at a seat beyond which the impact law of the two bodies acts in addition. Default: the value of
+    the catalog.
     """
     width: Quantity
-    """Overall width across the barrels. Default: the value of the catalog."""
+    """Overall width of the rack, across the barrels. Default: the value of the catalog."""
     post_half_spacing: Quantity
     """Distance of each post from the middle of the rack, across the barrels. Default: the value of the catalog."""
     post_half_spacing_along: Quantity
@@ -842,19 +850,22 @@ class RunFields(TypedDict, total=False):
     """Settings of the run."""
 
     accuracy: Literal["screening", "standard", "fine"]
-    """Accuracy of the motion if no step is given: with "standard", the times of falls are within 10 ms, and the
-    drifts within 1 %, of the results with steps ten times shorter. The steps of "screening" are 1.25 times as
-    long, the steps of "fine" a quarter as long. Default: standard.
+    """Accuracy of the computed motion if no step is given. With "standard", the times of falls differ by at most
+    10 ms, and the drifts by at most 1 %, from the results with steps ten times shorter. The steps of
+    "screening" are 1.25 times as long as those of "standard", and the steps of "fine" are a quarter as long.
+    Default: standard.
     """
     duration: Quantity
-    """Simulated time; for a run that ends by "rest", the maximum simulated time. Default: the duration of the
+    """Simulated time; if `until` is "rest" or "verdict", the maximum simulated time. Default: the duration of the
     motion plus `patience`, or plus 5 s if the run ends by duration.
     """
     gravity: Quantity
     """Acceleration of gravity. Default: 9.80665 m/s^2."""
     method: Union[Literal["velocity-verlet"], Literal["semi-implicit-euler"], Literal["runge-kutta-4"], Literal["bogacki-shampine"]]
     patience: Quantity
-    """Maximum time for which a run that ends by "rest" continues after the end of the motion. Default: 30 s."""
+    """Maximum time for which a run continues after the end of the motion if `until` is "rest" or "verdict".
+    Default: 30 s.
+    """
     settle: bool
     """True if the bodies are brought to rest under gravity before the motion starts. Default: true."""
     similitude: Union[float, Quantity]
@@ -864,13 +875,13 @@ class RunFields(TypedDict, total=False):
     step is divided during impacts. Default: auto.
     """
     stop_after_collapse: Quantity
-    """Time that the run continues after a collapse. Default: never stop early."""
+    """Time for which the run continues after a collapse. Default: never stop early."""
     until: Literal["rest", "verdict", "duration"]
     """Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and
     all bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack
-    has come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. Variants of
-    a run that ends by "rest" end by `imperfections.until`. Default: "rest" for a stack, "duration" for a free
-    scene.
+    has come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest",
+    the runs of the variants end as `imperfections.until` states. Default: "rest" for a stack, "duration" for a
+    free scene.
     """
     tolerance: Union[float, Quantity]
     """Largest relative error of one step. Default: 1e-6."""
@@ -882,20 +893,20 @@ class ScaleFields(TypedDict, total=False):
     factor: Union[float, Quantity]
     """Factor; a negative factor reverses the motion. Default: 1 unless another field scales the motion."""
     measure: str
-    """Any other intensity measure that grows with the motion. The motion is scaled so that the measure reaches
-    `value`: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)` (period in
-    seconds, damping 5 %) or `sa(1.0,0.02)`.
+    """Name of any other intensity measure that grows with the motion. The motion is scaled so that this measure
+    reaches `value`. Examples: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`,
+    `sa(1.0)` (period in seconds, damping 5 %) and `sa(1.0,0.02)`.
     """
     of: Literal["component", "rotd50", "rotd100", "geomean"]
     """Components from which `measure` is computed: the component that drives the stack, or both horizontals of the
     record. Default: component.
     """
     pga: Quantity
-    """Peak horizontal acceleration to reach."""
+    """Peak horizontal acceleration to which the motion is scaled."""
     pgv: Quantity
-    """Peak horizontal velocity to reach."""
+    """Peak horizontal velocity to which the motion is scaled."""
     value: Quantity
-    """Value of `measure` to reach."""
+    """Value of `measure` to which the motion is scaled."""
 
 
 class ScenarioFields(TypedDict, total=False):
@@ -947,13 +958,13 @@ class ShapeFields(TypedDict, total=False):
     vertices: list[list[Quantity]]
     """Corners in order around the polygon; sides must not cross."""
     half_angle: Quantity
-    """Half the angle that the trough spans, from its lowest point."""
+    """Half the angle that the trough spans: the angle from its lowest point to its edge."""
     bilge_diameter: Quantity
-    """Diameter at the middle."""
+    """Diameter of the barrel at its middle."""
     head_diameter: Quantity
-    """Diameter at the ends."""
+    """Diameter of the barrel at its ends."""
     length: Quantity
-    """Length."""
+    """Length of the barrel."""
     parts: list["PartFields"]
     """The outlines; where two of them overlap, the mass of the overlap counts twice."""
 
@@ -970,7 +981,7 @@ class ShockFields(TypedDict, total=False):
     component.
     """
     none: bool
-    """True for ground at rest."""
+    """True if the ground stays at rest."""
     obtain: str
     """Where to get the record, shown to users who do not have it."""
     processing: Literal["default", "none"]
@@ -982,9 +993,9 @@ class ShockFields(TypedDict, total=False):
     scale: "ScaleFields"
     """Scaling of the motion. Default: factor 1."""
     sensitivity: Union[float, Quantity]
-    """Counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
+    """Sensitivity in counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
     similitude: Union[float, Quantity]
-    """Length scale of Froude similitude applied to the motion alone. Default: 1.0."""
+    """Length scale of a Froude similitude that is applied only to the motion. Default: 1.0."""
     sine: "SineFields"
     """A harmonic motion."""
     time_step: Quantity
@@ -992,7 +1003,7 @@ class ShockFields(TypedDict, total=False):
     unit: str
     """Unit of acceleration, only for a file that does not state its unit. Default: the unit of the file."""
     vertical: Union[str, Literal[False]]
-    """Vertical component of the same record, or false."""
+    """Vertical component of the same record; false for no vertical motion."""
     vertical_record: str
     """File of the vertical motion, relative to the scenario file."""
 
@@ -1001,7 +1012,7 @@ class SineFields(TypedDict, total=False):
     """A harmonic motion."""
 
     amplitude: Quantity
-    """Amplitude of displacement, velocity or acceleration, according to its unit."""
+    """Peak displacement, velocity or acceleration; the unit determines which of them."""
     cycles: Union[float, Quantity]
     """Number of cycles, including ramps; the duration can be stated instead. Default: `duration` / `period`."""
     direction: Literal["horizontal", "vertical"]
@@ -1025,17 +1036,17 @@ class SolidFields(TypedDict, total=False):
     """Radius."""
     type: Union[Literal["ball"], Literal["capsule"], Literal["block"], Literal["barrel"], Literal["half-space"], Literal["compound"]]
     length: Quantity
-    """Length, including both ends. Or: Length."""
+    """Length of the capsule, including both ends. Or: Length of the barrel."""
     rounding: Quantity
     """Radius of the rounded edges; the penetration at a contact must stay below this radius. Default: 5 mm."""
     sides: list[Quantity]
     """Side lengths along local x, y and z."""
     bilge_diameter: Quantity
-    """Diameter at the middle."""
+    """Diameter of the barrel at its middle."""
     chime_radius: Quantity
-    """Radius of the chime, the rounded rim between staves and head. Default: 10 mm."""
+    """Radius of the chime, the rounded rim between the staves and a head. Default: 10 mm."""
     head_diameter: Quantity
-    """Diameter at the ends."""
+    """Diameter of the barrel at its ends."""
     parts: list["SolidPartFields"]
     """The solids, all of the same density; where two of them overlap, the mass of the overlap counts twice."""
 
@@ -1111,7 +1122,7 @@ class StrapFields(TypedDict, total=False):
     damping: Quantity
     """Damping of one strap while it is taut (force per rate of elongation). Default: 0 N s/m."""
     levels: int
-    """Number of levels that are strapped, counted from the top; 0 for no straps. Default: 0."""
+    """Number of levels with straps, counted from the top; 0 for no straps. Default: 0."""
     pretension: Quantity
     """Force in one strap when it is tightened; the stack settles under this force, so that part of the force is
     lost. Default: 0 N.
@@ -1125,8 +1136,8 @@ class StrapFields(TypedDict, total=False):
     strength: Quantity
     """Force above which a strap tears permanently; if not given, straps never tear."""
     ties: Literal["barrels-to-racks", "levels-together"]
-    """Bodies that are tied: every barrel to its rack, or in addition every rack to the rack below. Default:
-    barrels-to-racks.
+    """Bodies that the straps tie together: every barrel to its rack, or in addition every rack to the rack below.
+    Default: barrels-to-racks.
     """
 
 
@@ -1142,9 +1153,11 @@ class TieFields(TypedDict, total=False):
     one winery keeps from its walls (Press Democrat 2014). Default: 45 cm.
     """
     levels: int
-    """Number of levels that are tied, counted from the top; 0 for none. Default: 0."""
+    """Number of levels with ties, counted from the top; 0 for none. Default: 0."""
     side: Literal["left", "right", "both"]
-    """Side on which there is a wall or a ceiling, before mirroring. Default: both."""
+    """Side of the stack on which there is a wall or a ceiling. If the stack is mirrored, the wall or ceiling is on
+    the other side. Default: both.
+    """
     slack: Quantity
     """Slack of one tie on the stack at rest: the elongation at which the tie begins to pull. Default: 1 cm."""
     stiffness: Quantity
@@ -1155,7 +1168,7 @@ class TieFields(TypedDict, total=False):
     strength: Quantity
     """Force above which a tie tears permanently; if not given, ties never tear."""
     to: Literal["wall", "ceiling", "neighbors"]
-    """Anchor of the ties; walls and ceilings move with the ground. Default: wall."""
+    """Structure to which the ties are anchored; walls and ceilings move with the ground. Default: wall."""
     yields_at: Quantity
     """Force at which a tie yields and becomes permanently longer; if not given, ties never yield."""
 
@@ -1166,21 +1179,21 @@ class TunedMassFields(TypedDict, total=False):
     """
 
     damping_ratio: Union[float, Quantity]
-    """Damping ratio of the mass; the optimum for a mass ratio μ is √(3μ/8(1 + μ)), which is 0.13 for 5 % (Den
-    Hartog 1956). Default: 0.13.
+    """Damping ratio of the mass; the optimum for a mass ratio μ is √(3μ/(8(1 + μ))), which is 0.13 for μ = 5 %
+    (Den Hartog 1956). Default: 0.13.
     """
     level: int
     """Level of the racks that carry a mass; 0 for the top level. Default: 0."""
     mass: Quantity
-    """Mass on each rack of the level; 0 for no tuned masses. Default: 0 kg."""
+    """Tuned mass on each rack of the level; 0 for no tuned masses. Default: 0 kg."""
     period: Quantity
     """Natural period of the mass; the optimum for an undamped structure with period T is (1 + μ) T for a mass
     ratio μ (Den Hartog 1956). Default: 1 s.
     """
     stop_stiffness: Quantity
-    """Stiffness of the stops: an assumption. Default: 100 kN/m."""
+    """Stiffness of the stops. The default is an assumption. Default: 100 kN/m."""
     stroke: Quantity
-    """Stroke of the mass to either side before it meets a stop: an assumption. Default: 30 cm."""
+    """Stroke of the mass to either side before it meets a stop. The default is an assumption. Default: 30 cm."""
 
 
 class UnknownsFields(TypedDict, total=False):
@@ -1198,7 +1211,7 @@ class UnknownsFields(TypedDict, total=False):
     drawn: bool
     """True to draw the constants at random; false to keep them as stated in all variants. Default: true."""
     friction: Union[float, Quantity]
-    """Standard deviation of ln μ where racks or barrels touch each other, the same for static and kinetic
+    """Standard deviation of ln μ for contacts between racks or barrels; it is the same for static and kinetic
     friction. One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels;
     these values also apply to bodies that have fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer
     on smooth steel and up to 0.80 on rough steel (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut
@@ -1206,8 +1219,8 @@ class UnknownsFields(TypedDict, total=False):
     0.35, nine in ten variants have a μ within a factor of 1.8 of the stated value. Default: 0.35.
     """
     friction_barrel_rack: Union[float, Quantity]
-    """Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured. After a
-    measurement, only the scatter of ln μ from one pair of barrel and rack to another remains. Default:
+    """Standard deviation of ln μ for barrels on racks only; to be stated if this friction was measured. What
+    remains after a measurement is the scatter of ln μ between pairs of a barrel and a rack. Default:
     `friction`.
     """
     friction_correlation: Union[float, Quantity]
@@ -1226,21 +1239,21 @@ class UnknownsFields(TypedDict, total=False):
     """
     rails: Quantity
     """Largest deviation of `stack.rack.rail_half_spacing` to either side. It is uniformly distributed and drawn
-    once for all racks, since racks are made alike. Not drawn by default, because 1 cm changes shares of
-    collapses by less than their sampling error. Default: 0 mm.
+    once for all racks, since racks are made alike. Not drawn by default, because a deviation of 1 cm changes
+    the shares of collapses by less than their sampling error. Default: 0 mm.
     """
     static_friction: Union[float, Quantity]
     """Largest excess of the static over the kinetic friction coefficient of barrels on racks, as a fraction of the
     kinetic coefficient. The excess is uniformly distributed from 0, drawn once for all seats, and added to the
     stated excess. Tests of chestnut on chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not
-    drawn by default: in planar models, an excess of 0.4 changes shares of collapses by less than their sampling
-    error; in three dimensions, 39 of 64 variants of the demo on four levels collapse instead of 53, a result of
-    a single seed. Default: 0.
+    drawn by default: in planar models, an excess of 0.4 changes the shares of collapses by less than their
+    sampling error. In three dimensions, it reduces the number of collapses of the demo with four levels from 53
+    to 39 of 64 variants, with a single seed. Default: 0.
     """
     stick: Union[float, Quantity]
     """Standard deviation of the logarithm of the ratio of tangential to normal stiffness; one value is drawn for
-    all seats. Not drawn by default, because a factor of 2 changes shares of collapses by less than their
-    sampling error. Default: 0.
+    all seats. Not drawn by default, because a factor of 2 in this ratio changes the shares of collapses by less
+    than their sampling error. Default: 0.
     """
     stiffness: Union[float, Quantity]
     """Standard deviation of ln k, where k is the stiffness of seats; one value is drawn for all seats. The default
@@ -1276,22 +1289,22 @@ class WalkingStopFields(TypedDict, total=False):
     assumption. Default: 2 kN s/m.
     """
     gap: Quantity
-    """Displacement of a rack from its position at rest, to either side, before it meets a lip: an assumption.
-    Default: 2 cm.
+    """Displacement of a rack from its position at rest, to either side, before it meets a lip. The default is an
+    assumption. Default: 2 cm.
     """
     holds: Literal["along", "across", "both"]
     """Direction in which the stops hold: along the barrels, across them, or both. Default: along."""
     levels: int
-    """Number of levels whose racks have stops, counted from the top; 12 for all, 0 for none. The bottom rack never
-    has stops. Default: 0.
+    """Number of levels with stops under their racks, counted from the top; 12 for all levels, 0 for none. The
+    bottom rack never has stops. Default: 0.
     """
     lip: Quantity
-    """Height of the lips: an assumption. A rack that has risen by more than this height is disengaged. Default: 4
-    cm.
+    """Height of the lips. A rack that has risen by more than this height is disengaged. The default is an
+    assumption. Default: 4 cm.
     """
     stiffness: Quantity
-    """Stiffness of the lips at one barrel (force per displacement): an assumption for bent steel plate. Default: 1
-    MN/m.
+    """Stiffness of the lips at one barrel (force per displacement). The default is an assumption for bent steel
+    plate. Default: 1 MN/m.
     """
     strength: Quantity
     """Force above which the lips at one barrel break permanently; if not given, lips never break."""

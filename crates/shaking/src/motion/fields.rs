@@ -45,7 +45,7 @@ pub(super) const LONGEST: f64 = 3600.0;
 table! {
     /// A harmonic motion.
     pub static SINE = "sine";
-    /// Amplitude of displacement, velocity or acceleration, according to its unit.
+    /// Peak displacement, velocity or acceleration; the unit determines which of them.
     amplitude = Kind::Quantity(&[Dimension::LENGTH, Dimension::VELOCITY, Dimension::ACCELERATION], Range::POSITIVE),
         Default::Required;
     /// Period; the frequency can be stated instead.
@@ -71,7 +71,7 @@ table! {
     pub static PULSE = "pulse";
     /// Form of the pulse.
     kind = Kind::Choice(names::<PulseKind>), Default::Required;
-    /// Peak acceleration or peak velocity, according to its unit.
+    /// Peak acceleration or peak velocity; the unit determines which of them.
     amplitude = Kind::Quantity(&[Dimension::ACCELERATION, Dimension::VELOCITY], Range::POSITIVE),
         Default::Required;
     /// Period; the frequency can be stated instead.
@@ -83,7 +83,7 @@ table! {
     /// Direction of the motion.
     direction = Kind::Choice(names::<Direction>), Default::Value("\"horizontal\"");
     by kind {
-        /// Second derivative of a Gaussian, in acceleration.
+        /// Ricker wavelet: acceleration in the form of the second derivative of a Gaussian.
         "ricker" {}
         /// Acceleration in the form of half a sine wave.
         "half-sine" {}
@@ -97,7 +97,7 @@ table! {
         "gabor" {
             /// Width of the envelope, as a number of cycles.
             gamma = Kind::Number(Range::up_to(100.0)), Default::Required;
-            /// Phase.
+            /// Phase angle of the wave.
             phase = Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)),
                 Default::Value("\"0 rad\"");
         }
@@ -114,7 +114,7 @@ table! {
         "mavroeidis-papageorgiou" {
             /// Parameter γ, which determines the oscillatory character of the pulse; greater than 1.
             gamma = Kind::Number(Range { least: 1.0, above: true, greatest: 100.0 }), Default::Required;
-            /// Phase.
+            /// Phase angle of the wave.
             phase = Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)),
                 Default::Value("\"0 rad\"");
         }
@@ -128,15 +128,15 @@ table! {
     /// Factor; a negative factor reverses the motion.
     factor = Kind::Number(Range { least: -1e6, above: false, greatest: 1e6 }),
         Default::Derived("1 unless another field scales the motion");
-    /// Peak horizontal acceleration to reach.
+    /// Peak horizontal acceleration to which the motion is scaled.
     pga = Kind::Quantity(&[Dimension::ACCELERATION], Range::up_to(1e4)), Default::Nothing;
-    /// Peak horizontal velocity to reach.
+    /// Peak horizontal velocity to which the motion is scaled.
     pgv = Kind::Quantity(&[Dimension::VELOCITY], Range::up_to(1e3)), Default::Nothing;
-    /// Any other intensity measure that grows with the motion. The motion is scaled so that the measure reaches
-    /// `value`: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)` (period in
-    /// seconds, damping 5 %) or `sa(1.0,0.02)`.
+    /// Name of any other intensity measure that grows with the motion. The motion is scaled so that this measure
+    /// reaches `value`. Examples: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`,
+    /// `sa(1.0)` (period in seconds, damping 5 %) and `sa(1.0,0.02)`.
     measure = Kind::Text, Default::Nothing;
-    /// Value of `measure` to reach.
+    /// Value of `measure` to which the motion is scaled.
     value = Kind::Quantity(&[Dimension::ACCELERATION, Dimension::VELOCITY, Dimension::LENGTH], Range::up_to(1e4)),
         Default::Nothing;
     /// Components from which `measure` is computed: the component that drives the stack, or both horizontals of the record.
@@ -159,11 +159,11 @@ table! {
     sine = Kind::Table(&SINE), Default::Nothing;
     /// A pulse.
     pulse = Kind::Table(&PULSE), Default::Nothing;
-    /// True for ground at rest.
+    /// True if the ground stays at rest.
     none = Kind::Flag, Default::Nothing;
     /// Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`.
     component = Kind::Label, Default::Derived("the first horizontal component");
-    /// Vertical component of the same record, or false.
+    /// Vertical component of the same record; false for no vertical motion.
     vertical = Kind::TextOrFalse, Default::Nothing;
     /// File of the vertical motion, relative to the scenario file.
     vertical_record = Kind::Text, Default::Nothing;
@@ -172,7 +172,7 @@ table! {
         Default::Derived("the time step of the file");
     /// Unit of acceleration, only for a file that does not state its unit.
     unit = Kind::Unit(Dimension::ACCELERATION), Default::Derived("the unit of the file");
-    /// Counts per m/s², only for a file that contains counts (miniSEED, SAC).
+    /// Sensitivity in counts per m/s², only for a file that contains counts (miniSEED, SAC).
     sensitivity = Kind::Number(Range::up_to(1e15)), Default::Nothing;
     /// Signal processing of the record.
     processing = Kind::Choice(names::<Processing>), Default::Value("\"default\"");
@@ -180,7 +180,7 @@ table! {
     obtain = Kind::Text, Default::Nothing;
     /// Scaling of the motion.
     scale = Kind::Table(&SCALE), Default::Derived("factor 1");
-    /// Length scale of Froude similitude applied to the motion alone.
+    /// Length scale of a Froude similitude that is applied only to the motion.
     similitude = Kind::Number(Range { least: 1e-3, above: false, greatest: 1e3 }), Default::Value("1.0");
     at most one of &["record", "bundled", "sine", "pulse", "none"];
     at most one of &["sine", "pulse", "none", "component"];

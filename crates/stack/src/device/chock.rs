@@ -43,7 +43,7 @@ section! {
     /// assumption.
     angle: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(0.1, 1.4)), Default::Value("\"55 deg\"");
-    /// Clearance between a chock and its barrel: an assumption.
+    /// Clearance between a chock and its barrel. The default is an assumption.
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 0.2)), Default::Value("\"5 mm\"");
 }
 

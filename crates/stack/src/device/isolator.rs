@@ -81,10 +81,10 @@ section! {
     /// assumption; it gives a period of 2 s.
     dish_radius: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.3, 100.0)), Default::Value("\"1 m\"");
-    /// Stroke of the platform to either side before it meets a stop: an assumption.
+    /// Stroke of the platform to either side before it meets a stop. The default is an assumption.
     stroke: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.001, 10.0)), Default::Value("\"20 cm\"");
-    /// Stiffness of a stop: an assumption.
+    /// Stiffness of a stop. The default is an assumption.
     stop_stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
     /// Damping of a stop, which acts on approach only. The default is an assumption.
@@ -93,10 +93,11 @@ section! {
     /// Stiffness of the springs that pull the platform back to its initial position.
     recentring: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::NOT_NEGATIVE), Default::Value("\"0 N/m\"");
-    /// Stiffness of the bearings at one end of a platform: an assumption for steel balls on a steel plate.
+    /// Stiffness of the bearings at one end of a platform. The default is an assumption for steel balls on a steel
+    /// plate.
     bearing_stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"10 MN/m\"");
-    /// Mass of a platform: an assumption.
+    /// Mass of a platform. The default is an assumption.
     mass: f64 =
         Kind::Quantity(&[Dimension::MASS], Range::up_to(1e4)), Default::Value("\"60 kg\"");
 }

@@ -41,9 +41,9 @@ section! {
     pub static SECTION = "lid";
     /// Number of levels with lids, counted from the top; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
-    /// Rise of a barrel from its position at rest before it touches its lid: an assumption.
+    /// Rise of a barrel from its position at rest before it touches its lid. The default is an assumption.
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)), Default::Value("\"1 cm\"");
-    /// Stiffness of one lid (force per displacement): an assumption.
+    /// Stiffness of one lid (force per displacement). The default is an assumption.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
     /// Damping of one lid (force per speed), which acts on approach only. The default is an assumption.

@@ -57,7 +57,7 @@ section! {
     /// for rubber.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"5 kN s/m\"");
-    /// Friction coefficient of wood on pads: an assumption.
+    /// Friction coefficient of wood on pads. The default is an assumption.
     friction: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.6");
 }
 

@@ -79,9 +79,9 @@ section! {
     pub struct Straps;
     /// Straps on the top levels, which pull but never push and have no mass.
     pub static SECTION = "strap";
-    /// Number of levels that are strapped, counted from the top; 0 for no straps.
+    /// Number of levels with straps, counted from the top; 0 for no straps.
     levels: u32 = LEVELS, Default::Value("0");
-    /// Bodies that are tied: every barrel to its rack, or in addition every rack to the rack below.
+    /// Bodies that the straps tie together: every barrel to its rack, or in addition every rack to the rack below.
     ties: Ties = Kind::Choice(names::<Ties>), Default::Value("\"barrels-to-racks\"");
     /// Stiffness of one strap (force per elongation); a polyester strap tears at an elongation of about 5 to 7 % of its
     /// length.

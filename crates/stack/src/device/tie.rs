@@ -73,11 +73,12 @@ section! {
     /// Cables or rods from the ends of racks to a wall, to the ceiling or to the neighboring racks: they pull, never
     /// push.
     pub static SECTION = "tie";
-    /// Number of levels that are tied, counted from the top; 0 for none.
+    /// Number of levels with ties, counted from the top; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
-    /// Anchor of the ties; walls and ceilings move with the ground.
+    /// Structure to which the ties are anchored; walls and ceilings move with the ground.
     to: Anchor = Kind::Choice(names::<Anchor>), Default::Value("\"wall\"");
-    /// Side on which there is a wall or a ceiling, before mirroring.
+    /// Side of the stack on which there is a wall or a ceiling. If the stack is mirrored, the wall or ceiling is on the
+    /// other side.
     side: Side = Kind::Choice(names::<Side>), Default::Value("\"both\"");
     /// Distance from the end of a rack to the wall or the ceiling; the default is the clearance of 18 inches that one
     /// winery keeps from its walls (Press Democrat 2014).

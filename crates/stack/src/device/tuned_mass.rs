@@ -75,7 +75,7 @@ section! {
     pub struct TunedMass;
     /// Masses on the racks of one level, which oscillate on springs and dampers in the plane and touch no other body.
     pub static SECTION = "tuned_mass";
-    /// Mass on each rack of the level; 0 for no tuned masses.
+    /// Tuned mass on each rack of the level; 0 for no tuned masses.
     mass: f64 =
         Kind::Quantity(&[Dimension::MASS], Range::between(0.0, 1e4)), Default::Value("\"0 kg\"");
     /// Level of the racks that carry a mass; 0 for the top level.
@@ -83,13 +83,13 @@ section! {
     /// Natural period of the mass; the optimum for an undamped structure with period T is (1 + μ) T for a mass ratio μ (Den Hartog 1956).
     period: f64 =
         Kind::Quantity(&[Dimension::TIME], Range::between(0.05, 20.0)), Default::Value("\"1 s\"");
-    /// Damping ratio of the mass; the optimum for a mass ratio μ is √(3μ/8(1 + μ)), which is 0.13 for 5 % (Den Hartog
-    /// 1956).
+    /// Damping ratio of the mass; the optimum for a mass ratio μ is √(3μ/(8(1 + μ))), which is 0.13 for μ = 5 % (Den
+    /// Hartog 1956).
     damping_ratio: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.13");
-    /// Stroke of the mass to either side before it meets a stop: an assumption.
+    /// Stroke of the mass to either side before it meets a stop. The default is an assumption.
     stroke: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::up_to(10.0)), Default::Value("\"30 cm\"");
-    /// Stiffness of the stops: an assumption.
+    /// Stiffness of the stops. The default is an assumption.
     stop_stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"100 kN/m\"");
 }

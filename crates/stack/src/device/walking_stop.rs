@@ -63,16 +63,17 @@ section! {
     pub struct WalkingStops;
     /// Stops between racks and the barrels below: lips that a rack touches after it has walked through a gap.
     pub static SECTION = "walking_stop";
-    /// Number of levels whose racks have stops, counted from the top; 12 for all, 0 for none. The bottom rack never has
-    /// stops.
+    /// Number of levels with stops under their racks, counted from the top; 12 for all levels, 0 for none. The bottom
+    /// rack never has stops.
     levels: u32 = LEVELS, Default::Value("0");
     /// Direction in which the stops hold: along the barrels, across them, or both.
     holds: Holds = Kind::Choice(names::<Holds>), Default::Value("\"along\"");
-    /// Displacement of a rack from its position at rest, to either side, before it meets a lip: an assumption.
+    /// Displacement of a rack from its position at rest, to either side, before it meets a lip. The default is an
+    /// assumption.
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"2 cm\"");
-    /// Height of the lips: an assumption. A rack that has risen by more than this height is disengaged.
+    /// Height of the lips. A rack that has risen by more than this height is disengaged. The default is an assumption.
     lip: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1.0)), Default::Value("\"4 cm\"");
-    /// Stiffness of the lips at one barrel (force per displacement): an assumption for bent steel plate.
+    /// Stiffness of the lips at one barrel (force per displacement). The default is an assumption for bent steel plate.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"1 MN/m\"");
     /// Damping of the lips at one barrel (force per speed), which acts on approach only. The default is an

@@ -148,7 +148,7 @@ columns! {
     };
     /// time at which the first barrel counted as fallen
     first_fall "s": Outcome Number |case| case.first_fall;
-    /// number of barrels of the stack
+    /// number of barrels in the stack
     barrels "": Outcome Integer |case| case.outcome.is_ok().then_some(case.barrels);
     /// number of barrels that had fallen when the case ended
     barrels_fallen "": Outcome Integer |case| {
@@ -165,21 +165,21 @@ columns! {
     stack_wine "m3": Outcome Number |case| case.outcome.is_ok().then_some(case.wine);
     /// largest displacement of the top divided by the height of the stack, until the first loss of seat
     top_drift_ratio "": Demand Number |case| case.demands.top_drift_ratio;
-    /// largest slip of the bottom rack, until the first loss of seat
+    /// largest slip of the bottom rack until the first loss of seat
     base_slip_peak "m": Demand Number |case| case.demands.base_slip_peak;
     /// slip of the bottom rack at the end of the case
     base_slip_residual "m": Demand Number |case| case.demands.base_slip_residual;
-    /// largest tilt of a rack, until the first loss of seat
+    /// largest tilt of a rack until the first loss of seat
     rack_tilt_peak "rad": Demand Number |case| case.demands.rack_tilt_peak;
-    /// largest displacement of a rack on its supports, until the first loss of seat
+    /// largest displacement of a rack on its supports until the first loss of seat
     rack_walk_peak "m": Demand Number |case| case.demands.rack_walk_peak;
     /// largest normal stress on a bottom barrel divided by the largest stress at rest, until the first loss of seat
     stress_amplification "": Demand Number |case| case.demands.stress_amplification;
-    /// like stress_amplification, but with stresses averaged over the part of the boundary that is loaded at rest
+    /// like stress_amplification, but each stress is an average over the part of the boundary that is loaded at rest
     mean_stress_amplification "": Demand Number |case| case.demands.mean_stress_amplification;
-    /// largest vertical force between two bodies, until the first loss of seat
+    /// largest vertical force between two bodies until the first loss of seat
     vertical_force_peak "N": Demand Number |case| force(case, |joint| joint.until_loss.vertical.0);
-    /// largest horizontal force between two bodies, until the first loss of seat
+    /// largest horizontal force between two bodies until the first loss of seat
     horizontal_force_peak "N": Demand Number |case| force(case, |joint| joint.until_loss.horizontal.0);
     /// largest vertical force between a barrel and a rack, divided by the capacity of the staves, until the first loss of seat
     stave_utilization "": Demand Number |case| case.demands.stave_utilization;
@@ -213,7 +213,7 @@ columns! {
     end_time "s": Run Number |case| case.end_time;
     /// number of accepted time steps
     steps "": Run Integer |case| case.steps.and_then(|steps| usize::try_from(steps).ok());
-    /// error of the energy balance divided by the energy throughput
+    /// error of the energy balance divided by the energy supplied
     energy_residual_ratio "": Run Number |case| case.energy_residual_ratio;
     /// number of warnings
     warnings "": Run Integer |case| Some(case.warnings.len());

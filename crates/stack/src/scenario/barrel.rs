@@ -64,25 +64,25 @@ known! {
         /// Catalog barrel on which this barrel is based.
         base = Kind::Choice(catalog::barrel_names), Default::Value("\"bordeaux-225\"");
     };
-    /// Contents, and whether they rotate with the barrel.
+    /// Contents of the barrel, and whether they rotate with it.
     fill: Fill = Kind::Choice(names::<Fill>), Default::Value("\"full-fluid\"");
-    /// Filled fraction of the capacity, for barrels whose `fill` is set to "part" here or in an override.
+    /// Fraction of the capacity that is filled, for barrels whose `fill` is "part", here or in an override.
     filled: f64 = Kind::Number(FILLED), Default::Value("0.9");
-    /// Mass of wood and contents.
+    /// Mass of the barrel with its contents.
     mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
         Default::Derived("the empty mass plus 990 kg/m^3 times the filled part of the capacity");
-    /// Mass of wood and hoops.
+    /// Mass of the wood and hoops of the barrel.
     empty_mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), CATALOG;
-    /// Length over the chimes.
+    /// Overall length of the barrel, over the chimes.
     length: f64 = SIZE, CATALOG;
-    /// Outer diameter at the bilge, the widest part.
+    /// Outer diameter of the barrel at the bilge, its widest part.
     bilge_diameter: f64 = SIZE, CATALOG;
-    /// Outer diameter at the heads.
+    /// Outer diameter of the barrel at the heads.
     head_diameter: f64 = SIZE, CATALOG;
     /// Thickness of staves and heads.
     stave_thickness: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-3, above: false, greatest: 1.0 }), CATALOG;
-    /// Nominal volume.
+    /// Nominal volume of the barrel.
     capacity: f64 = Kind::Quantity(&[Dimension::VOLUME], Range::up_to(100.0)), CATALOG;
     /// Diameter of the circle that represents the barrel in the plane across the barrels.
     section_diameter: f64 = SIZE, Default::Derived("the diameter of the barrel above the rails of the rack");

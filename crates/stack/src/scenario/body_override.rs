@@ -33,21 +33,21 @@ section! {
     body as "kind": StackBody = Kind::Choice(names::<StackBody>), Default::Value("\"barrel\"");
     /// Level, 1 at the bottom.
     level: u32 = LEVELS, Default::Required;
-    /// Column, 1 at the left before mirroring. The columns of racks and those of barrels are numbered separately. In
-    /// both planes or in three dimensions, columns are counted across the barrels.
+    /// Number of the column; 1 is at the left of a stack that is not mirrored. The columns of racks and those of
+    /// barrels are numbered separately. In both planes or in three dimensions, columns are counted across the barrels.
     column: Option<u32> = COLUMNS, Default::Derived("every column of the level");
-    /// Row along the barrels in a three-dimensional model, 1 nearest to the viewer. The rows of racks and those of
-    /// barrels are numbered separately.
+    /// Number of the row along the barrels in a three-dimensional model; 1 is nearest to the viewer. The rows of racks
+    /// and those of barrels are numbered separately.
     row: Option<u32> = COLUMNS, Default::Derived("every row");
-    /// Mass of the body, instead of the regular mass.
+    /// Mass of this body; it replaces the mass that applies to other bodies of its kind.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
-    /// Contents of the barrel, instead of the regular contents; for barrels only.
+    /// Contents of this barrel, which replace the contents that apply to other barrels.
     fill: Option<Fill> = Kind::Choice(names::<Fill>), Default::Nothing;
-    /// Displacement from the regular position, positive to the right before mirroring.
+    /// Displacement of the body from its regular position, positive to the right in a stack that is not mirrored.
     offset_x: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
-    /// Displacement from the regular position along the barrels, positive away from the viewer; in three dimensions
-    /// only.
+    /// Displacement of the body from its regular position along the barrels, positive away from the viewer; in three
+    /// dimensions only.
     offset_y: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
 }

@@ -215,7 +215,7 @@ pub const RACKS: &[CatalogRack] = &[
     CatalogRack {
         rack: TWO_BARREL,
         seats: ON_BARRELS,
-        help: "Lies on the barrels below with straight tubes.",
+        help: "A rack that lies on the barrels below with straight tubes.",
         source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which gives pitch and width (Wines & \
              Vines 2016); clearance for 7 inches between the bilges of neighboring levels, so that six levels are \
              18 ft high (UC Berkeley 2000); straight tubes without feet; mass, rails, tubes and cradle are assumptions",
@@ -223,21 +223,21 @@ pub const RACKS: &[CatalogRack] = &[
     CatalogRack {
         rack: Rack { base: "two-barrel-feet", foot_height: 0.06, ..TWO_BARREL },
         seats: ON_BARRELS,
-        help: "Stands on the barrels below with feet.",
+        help: "A rack that stands on the barrels below with feet.",
         source: "`two-barrel` with a foot over each barrel below, as wide as the foot of the reconstructed \
             `candia-2008`: an assumption",
     },
     CatalogRack {
         rack: Rack { base: "single-bar", mass: 35.0, contact: SeatContact::Element, ..TWO_BARREL },
         seats: ON_BARRELS,
-        help: "Lies on the barrels below with one bar instead of two.",
+        help: "A rack that lies on the barrels below with one bar instead of two.",
         source: "single-bar version of the rack for two barrels (Wines & Vines 2016); the numbers are those of \
                  `two-barrel`, the mass is an assumption",
     },
     CatalogRack {
         rack: Rack { base: "four-barrel", mass: 80.0, barrels_deep: 2, ..TWO_BARREL },
         seats: ON_BARRELS,
-        help: "Two racks end to end.",
+        help: "A rack that consists of two racks, joined end to end.",
         source: "two two-barrel racks, joined end to end (Wines & Vines 2016); each has the dimensions of `two-barrel`, and the mass is an assumption",
     },
     CatalogRack {
@@ -255,7 +255,7 @@ pub const RACKS: &[CatalogRack] = &[
             ..TWO_BARREL
         },
         seats: ON_POSTS,
-        help: "Stands on the posts of the rack below.",
+        help: "A rack that stands on the posts of the rack below.",
         source: "racks that carry load on posts at their four corners (Wines & Vines 2014, 2016); every number is an \
             assumption; the post height gives the usual level pitch; across the barrels, the posts stand clear of the \
             barrels on both sides; along the barrels, the posts stand within the 38 in on which racks for two barrels \
@@ -264,7 +264,7 @@ pub const RACKS: &[CatalogRack] = &[
     CatalogRack {
         rack: Rack { base: "two-barrel-inclined", incline: 3.5 * PI / 180.0, ..TWO_BARREL },
         seats: ON_BARRELS,
-        help: "Lies on the barrels below with straight tubes, and raises one end of every barrel.",
+        help: "A rack that lies on the barrels below with straight tubes, and raises one end of every barrel.",
         source: "`two-barrel` with the tilt of 3.5° that kept pallets on the shelves of shaken racks (Sideris, \
             Filiatrault et al. 2010), in those tests across the shelf, here along the barrels; no maker of such a \
             rack is \

@@ -27,7 +27,7 @@ section! {
     pub struct Ground;
     /// The ground: the half-plane below a line through the origin.
     pub static GROUND = "ground";
-    /// Slope, positive when it rises to the right.
+    /// Slope of the ground, positive if it rises to the right.
     slope: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(-1.5, 1.5)), Default::Value("\"0 deg\"");
     /// Name by which interfaces and elements refer to the ground.
@@ -72,7 +72,7 @@ pub struct FreeBody {
     pub velocity: [f64; 2],
     /// Initial angular velocity, counterclockwise (rad/s).
     pub spin: f64,
-    /// Contact nodes.
+    /// Contact nodes on the boundary.
     pub nodes: Nodes,
     /// Additional boundaries.
     pub boundaries: Vec<Boundary>,
@@ -80,7 +80,7 @@ pub struct FreeBody {
     pub group: Option<String>,
     /// `true` if the body moves with the ground.
     pub fixed_to_ground: bool,
-    /// Viscous drag.
+    /// Viscous drag on the body.
     pub viscous: Option<Viscous>,
 }
 
@@ -91,7 +91,7 @@ pub struct Boundary {
     pub kind: String,
     /// Outline that other bodies touch, relative to the reference point of the body's shape; `None` for nodes only.
     pub shape: Option<Shape>,
-    /// Contact nodes.
+    /// Contact nodes on the boundary.
     pub nodes: Nodes,
 }
 
@@ -142,7 +142,7 @@ table! {
     /// Outline that other bodies touch, relative to the reference point of the body's shape; if not given, the boundary
     /// consists of its nodes only.
     shape = Kind::Table(&SHAPE), Default::Nothing;
-    /// Contact nodes.
+    /// Contact nodes on the boundary.
     nodes = NODES_KIND, NODES_DEFAULT;
 }
 
@@ -162,7 +162,7 @@ table! {
     kind = Kind::Text, Default::Derived("the name");
     /// Outline of the body.
     shape = Kind::Table(&SHAPE), Default::Required;
-    /// Mass.
+    /// Mass of the body.
     mass = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE), Default::Required;
     /// Moment of inertia about the center of mass.
     inertia = Kind::Quantity(&[Dimension::INERTIA], Range::POSITIVE),
@@ -177,7 +177,7 @@ table! {
     velocity = Kind::Point(Dimension::VELOCITY), Default::Value("[\"0 m/s\", \"0 m/s\"]");
     /// Initial angular velocity, counterclockwise.
     spin = Kind::Quantity(&[Dimension::SPIN], Range::between(-1e4, 1e4)), Default::Value("\"0 rad/s\"");
-    /// Contact nodes.
+    /// Contact nodes on the boundary.
     nodes = NODES_KIND, NODES_DEFAULT;
     /// Additional boundaries, each with a kind of its own.
     boundary = Kind::Tables(&BOUNDARY), Default::Nothing;
@@ -185,7 +185,7 @@ table! {
     group = Kind::Text, Default::Nothing;
     /// True if the body moves with the ground.
     fixed_to_ground = Kind::Flag, Default::Value("false");
-    /// Viscous drag.
+    /// Viscous drag on the body.
     viscous = Kind::Table(&VISCOUS), Default::Nothing;
 }
 

@@ -36,6 +36,7 @@ section! {
     /// distributed, cut off at three standard deviations, and drawn for each body. The default is an assumption; for a
     /// full barrel, it is equivalent to 3 L of missing wine, or of water in the wood.
     mass: f64 = SHARE, Default::Value("0.01");
-    /// True to reverse the motion for half of the variants, as if these stacks faced the opposite direction.
+    /// True to mirror the stack left to right in half of the variants, which are chosen at random; false to mirror no
+    /// variant.
     sign: bool = Kind::Flag, Default::Value("false");
 }

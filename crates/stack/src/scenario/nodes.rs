@@ -34,9 +34,9 @@ section! {
     pub struct ChosenNode;
     /// A contact node at a chosen point.
     static NODE = "node";
-    /// Position in the body, relative to the reference point of the shape.
+    /// Position of the node in the body, relative to the reference point of the shape.
     at: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Required;
-    /// Length of boundary that the node represents, for laws per meter of boundary.
+    /// Length of boundary that the node represents; used if constants are stated per meter of boundary.
     tributary_length: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"1 cm\"");
 }
@@ -55,8 +55,8 @@ const MOST_NODES: f64 = 20_000.0;
 table! {
     /// Contact nodes of a boundary, given by one of the fields.
     pub static NODES = "nodes";
-    /// Nodes at the corners, one node at the deepest point of a circle, or exact contact. If both bodies
-    /// have exact contact, their convex outlines touch each other at their deepest points.
+    /// Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. If both
+    /// bodies have exact contact, their convex outlines touch each other at their deepest points.
     rule = Kind::Choice(names::<NodeRule>), Default::Nothing;
     /// Largest distance between nodes along the boundary.
     spacing = Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e3 }),

@@ -114,7 +114,7 @@ known! {
     barrels_deep: u32 = Kind::Integer(1, 40), CATALOG;
     /// Distance between the axes of neighboring barrels.
     pitch: f64 = size(0.05, 10.0), CATALOG;
-    /// Overall width across the barrels.
+    /// Overall width of the rack, across the barrels.
     width: f64 = size(0.05, 100.0), CATALOG;
     /// Distance of each rail from the middle of a barrel, along the axis of the barrel.
     rail_half_spacing: f64 = size(0.01, 10.0), CATALOG;
@@ -124,19 +124,19 @@ known! {
     incline: f64 = Kind::Quantity(&[Dimension::ANGLE], Range::between(-0.2, 0.2)), CATALOG;
     /// Height of the lowest point of a carried barrel above the underside of the rack.
     clearance: f64 = size(1e-3, 10.0), CATALOG;
-    /// Height of the beams, not including feet.
+    /// Height of the beams of the rack, without its feet.
     beam_height: f64 = size(1e-3, 10.0), CATALOG;
-    /// Height of the feet under the beams, one over each barrel below; 0 for straight tubes without feet.
+    /// Height of the feet under the beams, with one foot over each barrel below; 0 for straight tubes without feet.
     foot_height: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), CATALOG;
     /// Cradle in which the rack carries a barrel.
     cradle: Cradle = Kind::ChoiceOrTable(Cradle::names, "type", &CRADLE), CATALOG;
-    /// Half the length of a foot.
+    /// Half the length of one foot of the rack.
     foot_half_length: f64 = size(1e-3, 10.0), CATALOG;
     /// Division of a seat into contact elements: nodes along flat undersides, one element, or one element for each of
     /// two rails. Constants stated per node apply to every element; constants stated per seat are divided among the
     /// elements.
     contact: SeatContact = Kind::Choice(names::<SeatContact>), CATALOG;
-    /// Penetration of a seat beyond which the impact law of the two bodies also acts.
+    /// Penetration at a seat beyond which the impact law of the two bodies acts in addition.
     seat_stroke: f64 = size(1e-4, 1.0), CATALOG;
     /// Distance between contact nodes on flat undersides.
     node_spacing: f64 = size(1e-3, 0.5), CATALOG;

@@ -50,8 +50,8 @@ named! {
     pub enum Accuracy {
         /// For statistics of many cases.
         Screening = "screening",
-        /// The times of falls are within 10 ms, and the drifts within 1 %, of the results with time steps ten times
-        /// shorter.
+        /// The times of falls differ by at most 10 ms, and the drifts by at most 1 %, from the results with time steps
+        /// ten times shorter.
         Standard = "standard",
         /// For single cases in which every number matters.
         Fine = "fine",
@@ -85,26 +85,26 @@ section! {
     pub static RUN = "run", by method of METHODS;
     /// Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and all
     /// bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack has
-    /// come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. Variants of a run
-    /// that ends by "rest" end by `imperfections.until`.
+    /// come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest", the
+    /// runs of the variants end as `imperfections.until` states.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");
-    /// Maximum time for which a run that ends by "rest" continues after the end of the motion.
+    /// Maximum time for which a run continues after the end of the motion if `until` is "rest" or "verdict".
     patience: f64 = Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)), Default::Value("\"30 s\"");
-    /// Simulated time; for a run that ends by "rest", the maximum simulated time.
+    /// Simulated time; if `until` is "rest" or "verdict", the maximum simulated time.
     duration: Option<f64> = Kind::Quantity(&[Dimension::TIME], Range::up_to(LONGEST_RUN)),
         Default::Derived("the duration of the motion plus `patience`, or plus 5 s if the run ends by duration");
     /// Time integration method.
     method: Method = Kind::Choice(Method::names), Default::Value("\"velocity-verlet\"");
-    /// Accuracy of the motion if no step is given: with "standard", the times of falls are within 10 ms, and the drifts
-    /// within 1 %, of the results with steps ten times shorter. The steps of "screening" are 1.25 times as long, the
-    /// steps of "fine" a quarter as long.
+    /// Accuracy of the computed motion if no step is given. With "standard", the times of falls differ by at most 10
+    /// ms, and the drifts by at most 1 %, from the results with steps ten times shorter. The steps of "screening" are
+    /// 1.25 times as long as those of "standard", and the steps of "fine" are a quarter as long.
     accuracy: Accuracy = Kind::Choice(names::<Accuracy>), Default::Value("\"standard\"");
     /// Time step, or first step of an adaptive method; "auto" derives it from the contacts and the accuracy. The step is divided during impacts.
     step: Option<f64> =
         Kind::WordOr("auto", &[Dimension::TIME], Range { least: 1e-9, above: false, greatest: 0.1 }),
         Default::Value("\"auto\"");
-    /// Time that the run continues after a collapse.
+    /// Time for which the run continues after a collapse.
     stop_after_collapse: Option<f64> =
         Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)), Default::Derived("never stop early");
     /// Acceleration of gravity.
@@ -136,14 +136,15 @@ section! {
     pub struct OutcomeSpec;
     /// Thresholds that define a collapse; every default is an assumption to be varied.
     pub static OUTCOME = "outcome";
-    /// Distance of the center of a barrel from its position in the rack, in barrel radii, beyond which the barrel has lost its seat.
+    /// A barrel has lost its seat when the distance of its center from its position in the rack exceeds this number of
+    /// barrel radii.
     seat_loss_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("0.5");
     /// A body counts as fallen when its center is more than this distance below its position at rest.
     fall_drop: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"0.2 m\"");
-    /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left the
-    /// barrels. Across the barrels, the reach ends where friction cannot hold the rack on the curved sides of the
-    /// barrels; along the barrels, it ends where the rail of the rack passes the ends of the barrels.
+    /// A rack has left the barrels below when its displacement on them exceeds this fraction of its reach. Across the
+    /// barrels, the reach ends where friction cannot hold the rack on the curved sides of the barrels; along the
+    /// barrels, it ends where the rail of the rack passes the ends of the barrels.
     rack_slide_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("1.0");
     /// A level counts as rocked over if its rack is inclined by more than this angle.
     rocking_angle: f64 =

@@ -45,17 +45,17 @@ choices! {
     Cradle = "cradle" {
         /// Radius.
         radius: f64 = SIZE, Default::Required;
-        /// Half the angle that the trough spans, from its lowest point.
+        /// Half the angle that the trough spans: the angle from its lowest point to its edge.
         half_angle: f64 =
             Kind::Quantity(&[Dimension::ANGLE], Range::up_to(PI)), Default::Required;
     }
     /// A barrel in side view with its axis along local x; the reference point is the middle.
     BarrelProfile = "barrel-profile" {
-        /// Length.
+        /// Length of the barrel.
         length: f64 = SIZE, Default::Required;
-        /// Diameter at the middle.
+        /// Diameter of the barrel at its middle.
         bilge_diameter: f64 = SIZE, Default::Required;
-        /// Diameter at the ends.
+        /// Diameter of the barrel at its ends.
         head_diameter: f64 = SIZE, Default::Required;
     }
     /// Several outlines joined into one rigid body; the reference point is the local origin.

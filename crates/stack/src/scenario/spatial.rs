@@ -22,7 +22,7 @@ section! {
     pub struct SpatialGround;
     /// The ground: everything below a plane through the origin.
     pub static GROUND = "ground-in-space";
-    /// Slope, positive if it rises to the right, along x.
+    /// Slope of the ground along x, positive if it rises to the right.
     slope: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(-1.5, 1.5)), Default::Value("\"0 deg\"");
     /// Name by which interfaces refer to the ground.

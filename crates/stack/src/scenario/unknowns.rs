@@ -19,15 +19,15 @@ section! {
     pub static UNKNOWNS = "unknowns";
     /// True to draw the constants at random; false to keep them as stated in all variants.
     drawn: bool = Kind::Flag, Default::Value("true");
-    /// Standard deviation of ln μ where racks or barrels touch each other, the same for static and kinetic friction.
-    /// One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels; these values
-    /// also apply to bodies that have fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer on smooth steel
-    /// and up to 0.80 on rough steel (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut (Villar-García et al.
-    /// 2020), 0.37 to 0.45 for pallets on steel racks. The default is an assumption; with 0.35, nine in ten variants
-    /// have a μ within a factor of 1.8 of the stated value.
+    /// Standard deviation of ln μ for contacts between racks or barrels; it is the same for static and kinetic
+    /// friction. One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels; these
+    /// values also apply to bodies that have fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer on smooth
+    /// steel and up to 0.80 on rough steel (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut (Villar-García et
+    /// al. 2020), 0.37 to 0.45 for pallets on steel racks. The default is an assumption; with 0.35, nine in ten
+    /// variants have a μ within a factor of 1.8 of the stated value.
     friction: f64 = DISPERSION, Default::Value("0.35");
-    /// Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured. After a
-    /// measurement, only the scatter of ln μ from one pair of barrel and rack to another remains.
+    /// Standard deviation of ln μ for barrels on racks only; to be stated if this friction was measured. What remains
+    /// after a measurement is the scatter of ln μ between pairs of a barrel and a rack.
     friction_barrel_rack: Option<f64> = DISPERSION, Default::Derived("`friction`");
     /// Standard deviation of ln μ on the ground; one value is drawn for racks and one for barrels. The default is an
     /// assumption: floors are washed daily, and μ of steel on concrete ranges from 0.4 in design to 0.65 in the tests
@@ -50,17 +50,17 @@ section! {
     /// Largest excess of the static over the kinetic friction coefficient of barrels on racks, as a fraction of the
     /// kinetic coefficient. The excess is uniformly distributed from 0, drawn once for all seats, and added to the
     /// stated excess. Tests of chestnut on chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not
-    /// drawn by default: in planar models, an excess of 0.4 changes shares of collapses by less than their sampling
-    /// error; in three dimensions, 39 of 64 variants of the demo on four levels collapse instead of 53, a result of a
-    /// single seed.
+    /// drawn by default: in planar models, an excess of 0.4 changes the shares of collapses by less than their sampling
+    /// error. In three dimensions, it reduces the number of collapses of the demo with four levels from 53 to 39 of 64
+    /// variants, with a single seed.
     static_friction: f64 = DISPERSION, Default::Value("0");
     /// Standard deviation of the logarithm of the ratio of tangential to normal stiffness; one value is drawn for all
-    /// seats. Not drawn by default, because a factor of 2 changes shares of collapses by less than their sampling
-    /// error.
+    /// seats. Not drawn by default, because a factor of 2 in this ratio changes the shares of collapses by less than
+    /// their sampling error.
     stick: f64 = DISPERSION, Default::Value("0");
     /// Largest deviation of `stack.rack.rail_half_spacing` to either side. It is uniformly distributed and drawn once
-    /// for all racks, since racks are made alike. Not drawn by default, because 1 cm changes shares of collapses by
-    /// less than their sampling error.
+    /// for all racks, since racks are made alike. Not drawn by default, because a deviation of 1 cm changes the shares
+    /// of collapses by less than their sampling error.
     rails: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 0.02)), Default::Value("\"0 mm\"");
 }

@@ -23,7 +23,7 @@ named! {
 }
 
 const SOURCE: [Field; 4] = fields! {
-    /// Moment magnitude.
+    /// Moment magnitude of the earthquake.
     magnitude = Kind::Number(Range::between(1.0, 9.5)), Default::Required;
     /// Distance from the source to the site.
     distance = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1e7)), Default::Required;
@@ -86,10 +86,10 @@ table! {
 }
 
 table! {
-    /// Motions that shake the stack, with one of `records`, `folder`, `bundled`, `sine`, `pulse` and
-    /// `synthetic`.
+    /// Motions that shake the stack, stated by exactly one of the fields `records`, `folder`, `bundled`, `sine`,
+    /// `pulse` and `synthetic`.
     pub(super) static MOTIONS = "motions";
-    /// Name of the motion in the table; if there are several motions, the first part of their names.
+    /// Name of the motion in the table of results; for several motions, the first part of their names.
     name = Kind::Text, Default::Derived("the name of the file, or the kind of the motion");
     /// Files of recorded motions, relative to the study file.
     records = Kind::Texts, Default::Nothing;

@@ -40,7 +40,7 @@ pub(super) struct ConvertArgs {
     choice: Choice,
     #[command(flatten)]
     output: Output,
-    /// Format in which the motions of a folder are written.
+    /// Format of the output files, if the input is a folder.
     #[arg(long, value_enum, default_value_t = Form::Txt)]
     form: Form,
     #[command(flatten)]

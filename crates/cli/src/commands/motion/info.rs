@@ -23,14 +23,14 @@ pub(super) struct InfoArgs {
     input: Input,
     #[arg(
         long,
-        help = "Also CAV standardized, RMS, Housner, ASI, VSI, Fajfar, Sa, RotD50 and RotD100, and \
-                the dominant velocity pulse"
+        help = "Also print CAV standardized, RMS, Housner, ASI, VSI, Fajfar, Sa, RotD50 and RotD100, \
+                and the dominant velocity pulse"
     )]
     all_measures: bool,
     /// Print one JSON document, in SI units.
     #[arg(long)]
     json: bool,
-    /// Folder for the table, if the input is a folder.
+    /// Folder for the table of all records, if the input is a folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -270,10 +270,9 @@ fn stated(record: &Record) -> Table {
 }
 
 described! {
-    /// Contents of records. Lengths are in m, times in s, and directions in degrees clockwise from
-    /// north.
+    /// Contents of motion records. Lengths are in m, times in s, and directions in degrees clockwise from north.
     pub(crate) struct MotionInfo {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["motion-info/1"],
         /// The records.
         records: Vec<RecordInfo>,
@@ -301,7 +300,7 @@ described! {
         notes: Vec<String> = found.0.notes.clone(),
     }
 
-    /// A component of a record.
+    /// One component of a record.
     struct ChannelInfo of found: (&Channel, Option<Corners>, BTreeMap<String, MeasureInfo>, Option<PulseFit>) {
         /// Name of the component.
         name: String = found.0.name.clone(),
@@ -333,7 +332,7 @@ described! {
         initial_velocity: f64 as "m/s" = found.0.initial_velocity,
         /// Peaks that the file states, with the corresponding peaks of the samples.
         stated_peaks: Vec<PeakInfo> = found.0.peaks.iter().map(PeakInfo::of).collect(),
-        /// Frequencies between which the signal exceeds the noise; null if unknown.
+        /// Frequencies between which the signal exceeds the noise; null if they are unknown.
         noise_corners: Option<CornersInfo> = found.1.as_ref().map(CornersInfo::of),
         /// Intensity measures, by name.
         measures: BTreeMap<String, MeasureInfo> = found.2,

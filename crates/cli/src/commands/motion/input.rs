@@ -29,7 +29,7 @@ pub(super) struct Input {
     /// records in them.
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
-    /// Join several files that are overlapping parts of one long record.
+    /// Join several files, each of which is a part of one long record and overlaps the next.
     #[arg(long)]
     pub(super) join: bool,
     /// Combine the components of several files even if they differ in station, sensor, event or
@@ -43,8 +43,8 @@ pub(super) struct Input {
     /// Time step if a file does not state one, such as "0.005 s".
     #[arg(long, value_name = "TIME")]
     time_step: Option<String>,
-    /// Sensitivity of files in counts, in counts per m/s2; HNE=427819 sets that of a single
-    /// channel, and may be repeated for other channels.
+    /// Sensitivity of files that contain counts, in counts per m/s2, for all channels, or for one channel, as in
+    /// HNE=427819; may be repeated for other channels.
     #[arg(long, value_name = "[CHANNEL=]NUMBER")]
     sensitivity: Vec<String>,
     /// `StationXML` file with the sensitivity and direction of each channel, or a folder of such
@@ -72,8 +72,8 @@ typed! {
 /// Components to use, and the processing to apply first.
 #[derive(Debug, clap::Args)]
 pub(super) struct Choice {
-    /// Component: a name in the file, an azimuth in degrees (obtained by rotation if no channel has
-    /// it), h1, h2 or vertical; may be repeated. By default, all components are used.
+    /// Component to use: a name in the file, an azimuth in degrees (computed by rotation if no channel has this
+    /// azimuth), h1, h2 or vertical; may be repeated. By default, all components are used.
     #[arg(long, value_name = "NAME")]
     pub(super) component: Vec<String>,
     /// Processing to apply first; by default, `convert` uses the numbers as read, and all other
@@ -85,15 +85,14 @@ pub(super) struct Choice {
 /// Named chains of processing steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Chain {
-    /// The numbers as read.
+    /// Use the numbers as read.
     None,
-    /// As in a scenario: compact for raw records, no processing for others.
+    /// Process as in a scenario: compact for raw records, no processing for all others.
     Default,
-    /// Remove the pre-event mean, taper 2 %, apply a zero-phase high-pass filter at 0.1 Hz and
-    /// remove its pads, and bring the final velocity and displacement to zero.
+    /// Remove the pre-event mean, taper 2 % of each end, apply a zero-phase high-pass filter at 0.1 Hz, remove the pads
+    /// of the filter, and bring the final velocity and displacement to zero.
     Compact,
-    /// Like compact, but keep the pads of the filter, which are quiet time before and after the
-    /// shaking.
+    /// Like compact, but keep the pads of the filter: quiet time before and after the shaking.
     Padded,
 }
 

@@ -34,13 +34,12 @@ pub(super) struct MatchArgs {
     /// listed below.
     #[arg(long, value_name = "TARGET")]
     to: String,
-    /// Component to match; by default, the first horizontal. `rotd50` and `rotd100` match both
-    /// horizontals together, by their response over all directions. All other components are only
-    /// scaled.
+    /// Component to match; by default, the first horizontal component. `rotd50` and `rotd100` match both horizontal
+    /// components together, by their response over all directions. All other components are only scaled.
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
-    /// Method for a single component; for two horizontals, amplitudes are matched first, then
-    /// wavelets are added.
+    /// Method for a single component. For two horizontal components, the amplitudes are matched first, and wavelets are
+    /// then added.
     #[arg(long, value_enum, default_value_t = Method::Time)]
     method: Method,
     /// Shortest period to match.
@@ -52,8 +51,8 @@ pub(super) struct MatchArgs {
     /// Maximum accepted misfit at any matched period.
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     tolerance: String,
-    /// Write the best motion even if it misses the tolerance; the misfit is printed, and the exit
-    /// status is then 3.
+    /// Write the best motion even if it misses the tolerance. In this case, the misfit is printed and the exit status
+    /// is 3.
     #[arg(long)]
     accept_misfit: bool,
     #[command(flatten)]
@@ -72,11 +71,9 @@ const NEAR: u8 = 3;
 typed! {
     /// Method of matching.
     enum Method of MatchMethod {
-        /// Adds wavelets at the times of the peak responses, which preserves the character of the
-        /// motion.
+        /// Add wavelets at the times of the peak responses; the motion keeps its character.
         Time = Self::Time,
-        /// Scales the Fourier amplitudes and keeps the phases, which changes the character of the
-        /// whole motion.
+        /// Scale the Fourier amplitudes and keep the phases; the character of the whole motion changes.
         Frequency = Self::Frequency,
     }
 }

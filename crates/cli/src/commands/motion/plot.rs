@@ -28,12 +28,12 @@ pub(super) struct PlotArgs {
     input: Input,
     #[command(flatten)]
     choice: Choice,
-    /// Folder for all figures, or one .svg, .png or .pdf file; the numbers are written beside each
-    /// figure as .csv.
+    /// Folder for all figures, or one .svg, .png or .pdf file; the numbers of each figure are written beside it as
+    /// .csv.
     #[arg(long, short, value_name = "DIR|FILE", visible_alias = "out")]
     output: PathBuf,
-    /// Figure to draw; may be repeated. By default, all figures are drawn into a folder, and the
-    /// accelerations into a single file.
+    /// Figure to draw; may be repeated. By default, all figures if the output is a folder, and the accelerations if it
+    /// is a file.
     #[arg(long, value_enum)]
     figure: Vec<Kind>,
     #[command(flatten)]
@@ -41,7 +41,7 @@ pub(super) struct PlotArgs {
     /// Damping ratio of the response spectra; may be repeated.
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     damping: Vec<String>,
-    /// Replace existing figures.
+    /// Replace figures that already exist.
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]

@@ -23,13 +23,13 @@ use crate::typed::{typed, word};
 pub(super) struct ProcessArgs {
     #[command(flatten)]
     input: Input,
-    /// Component: a name, an azimuth in degrees, h1, h2 or vertical; may be repeated.
+    /// Component to use: a name, an azimuth in degrees, h1, h2 or vertical; may be repeated.
     #[arg(long, value_name = "NAME")]
     component: Vec<String>,
-    /// Processing chain to start from; the options below change it.
+    /// Chain of processing steps to start from; the options below change it.
     #[arg(long, value_enum, default_value_t = Chain::Compact)]
     chain: Chain,
-    /// Mean to remove.
+    /// Mean to remove from the record.
     #[arg(long, value_enum)]
     mean: Option<Mean>,
     /// Subtract the straight line that fits the acceleration best by least squares.
@@ -48,28 +48,27 @@ pub(super) struct ProcessArgs {
     /// Order of the Butterworth filter, which is applied forward and backward.
     #[arg(long, value_name = "NUMBER")]
     order: Option<u32>,
-    /// Treatment of the zero pads that are added for the filter.
+    /// Treatment of the zeros that are added before and after the record for the filter (pads).
     #[arg(long, value_enum)]
     pads: Option<Fate>,
     /// Bring the final velocity and displacement to zero by adding the smallest smooth acceleration
     /// that does so.
     #[arg(long, value_enum)]
     close: Option<YesOrNo>,
-    /// Take both corner frequencies from the record. With auto, the signal between the corners is
-    /// at least three times the noise before the first arrival; both horizontals have the same
-    /// corners.
+    /// Take both corner frequencies from the record. With auto, the signal between the corners is at least three times
+    /// the noise before the first arrival; both horizontal components have the same corners.
     #[arg(long, value_enum, conflicts_with_all = ["high_pass", "low_pass"])]
     corners: Option<CornersFrom>,
-    /// Rotate the horizontals first: strike:122 rotates them to the fault-normal and fault-parallel
-    /// directions of a strike of 122 degrees, and vmax to the direction of the largest velocity.
+    /// Rotate the horizontal components first. strike:122 rotates them to the fault-normal and fault-parallel
+    /// directions of a strike of 122 degrees; vmax rotates them to the direction of the largest velocity.
     #[arg(long, value_name = "AXES", conflicts_with = "component")]
     rotate: Option<Axes>,
     #[command(flatten)]
     output: Output,
-    /// Format in which the motions of a folder are written.
+    /// Format of the output files, if the input is a folder.
     #[arg(long, value_enum, default_value_t = Form::Txt)]
     form: Form,
-    /// Plot the record before and after: as panels (.png, .svg, .pdf) or as a page (.html).
+    /// Plot the record before and after processing: as panels (.png, .svg, .pdf) or as a page (.html).
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
     #[command(flatten)]
@@ -109,7 +108,7 @@ impl FromStr for Axes {
 }
 
 typed! {
-    /// Mean to remove.
+    /// Mean to remove from the record.
     enum Mean of MeanRemoval {
         /// Remove no mean.
         Keep = Self::Keep,

@@ -26,7 +26,7 @@ pub(super) struct Harmonic {
     /// Number of cycles.
     #[arg(long, value_name = "NUMBER", default_value_t = 10.0)]
     pub(super) cycles: f64,
-    /// Length of the ramps at both ends, in cycles; without a ramp the velocity jumps at the start.
+    /// Length of the ramp at each end, in cycles; without ramps, the velocity jumps at the start.
     #[arg(long, value_name = "NUMBER", default_value_t = 2.0)]
     pub(super) ramp_cycles: f64,
 }
@@ -46,10 +46,10 @@ pub(super) struct Repeated {
 pub(super) struct Wavelet {
     #[command(flatten)]
     pub(super) size: Size,
-    /// Width, which determines the number of cycles.
+    /// Width of the wavelet, which determines the number of cycles.
     #[arg(long, value_name = "NUMBER", default_value_t = 2.0)]
     pub(super) gamma: f64,
-    /// Phase angle.
+    /// Phase angle of the wavelet.
     #[arg(long, value_name = "ANGLE", default_value = "0 deg", allow_hyphen_values = true)]
     phase: String,
 }

@@ -22,7 +22,7 @@ pub(super) struct ScaleArgs {
     /// g".
     #[arg(long, value_name = "MEASURE=VALUE", conflicts_with = "factor")]
     to: Option<String>,
-    /// Component whose measure --to sets; by default, the first horizontal. For both horizontals:
+    /// Component whose measure --to sets; by default, the first horizontal component. For both horizontal components:
     /// rotd50 or rotd100 (median or largest value over all directions), or geomean.
     #[arg(long, value_name = "NAME", requires = "to")]
     of: Option<String>,

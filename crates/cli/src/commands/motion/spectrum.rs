@@ -37,7 +37,7 @@ pub(super) struct SpectrumArgs {
     periods: Vec<String>,
     #[arg(
         long,
-        help = "Also compute RotD50 and RotD100, the median and the largest over all horizontal directions"
+        help = "Also compute RotD50 and RotD100, the median and the largest value over all horizontal directions"
     )]
     rotd: bool,
     /// Write the spectrum as .csv or .xlsx, in SI units.

@@ -29,7 +29,7 @@ struct Common {
     /// pulses.
     #[arg(long, value_name = "TIME")]
     time_step: Option<String>,
-    /// Make the motion a vertical component.
+    /// Make the motion a vertical component instead of a horizontal one.
     #[arg(long)]
     vertical: bool,
     #[command(flatten)]
@@ -128,7 +128,7 @@ struct Noise {
     /// Duration of the motion.
     #[arg(long, value_name = "TIME", default_value = "20 s")]
     duration: String,
-    /// Time at which full strength is reached.
+    /// Time at which the motion reaches full strength.
     #[arg(long, value_name = "TIME", default_value = "2 s")]
     rise: String,
     /// Time at which the decay starts.
@@ -144,13 +144,13 @@ struct Noise {
 /// Options of a point source in western North America; each option overrides a default.
 #[derive(Debug, clap::Args)]
 struct Source {
-    /// Moment magnitude.
+    /// Moment magnitude of the earthquake.
     #[arg(long, value_name = "NUMBER")]
     magnitude: f64,
     /// Distance from source to site.
     #[arg(long, value_name = "LENGTH")]
     distance: String,
-    /// Stress parameter.
+    /// Stress parameter of the source.
     #[arg(long, value_name = "STRESS", default_value = "7 MPa")]
     stress: String,
     /// High-frequency attenuation at the site.
@@ -191,7 +191,7 @@ struct Fault {
     /// Start of the pulse.
     #[arg(long, value_name = "TIME", default_value = "2 s")]
     start: String,
-    /// The remainder contains frequencies above this multiple of the pulse frequency.
+    /// Lowest frequency of the stochastic remainder, as a multiple of the pulse frequency.
     #[arg(long, value_name = "NUMBER", default_value_t = 1.0)]
     crossover: f64,
 }

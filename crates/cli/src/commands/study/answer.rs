@@ -182,13 +182,13 @@ pub(super) fn status(status: &Status) -> Vec<String> {
 described! {
     /// Results of a study.
     pub(crate) struct StudyResult of found: &(&Answer, &Provenance) {
-        /// Name and version of this layout.
+        /// Name and version of the format of this document.
         schema: &'static str ["study-result/1"] = "study-result/1",
         /// Provenance of the rows of the study.
         provenance: Provenance = found.1.clone(),
         /// Outcomes of the cases of the study.
         tally: TallyRow = TallyRow::of(&(found.0.tally, found.1.is_sample())),
-        /// Notes on cases whose runs were ended early.
+        /// Notes on cases whose runs ended early.
         notes: Vec<String> = found.0.endings.sentences(),
         /// Outcomes of cases, for each level that several cases share.
         levels: Vec<LevelTally> = found.0.levels().iter().map(LevelTally::of).collect(),

@@ -24,7 +24,7 @@ pub(super) struct ReportArgs {
     /// A folder that `barrelstack study` wrote, finished or not.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Hazard curve of the site; adds annual rates and expected losses.
+    /// Hazard curve of the site; the page then also has annual rates and expected losses.
     #[arg(long, value_name = "FILE")]
     hazard: Option<PathBuf>,
     /// Number of years for which probabilities are given.

@@ -374,7 +374,11 @@ fn step(
             first,
             Refusal::Missing(Given::Step),
             "a time column or a time step",
-            format!("{width} column(s) without time"),
+            if width == 1 {
+                "1 column without time".to_owned()
+            } else {
+                format!("{width} columns without time")
+            },
             remedy,
         )
     })

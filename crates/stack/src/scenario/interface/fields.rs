@@ -70,8 +70,8 @@ const STIFFNESS: Field = Field::new(
          a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between \
          racks and from a fallen rack to the ground; must be given otherwise",
     ),
-    "Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in N/m^1.5 \
-     or N/m^2.5.",
+    "Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the exponent \
+     1.5 in N/m^1.5 or N/m^2.5.",
 );
 
 const FRICTION_FIELD: Field = Field::new(
@@ -101,7 +101,7 @@ const LINEAR: &[Field] = &[
             "in a stack: with constants per seat, derived from the restitution that the catalog gives for the seats of \
              the rack; with constants per node, 22 N s/cm if the stiffness is not given either",
         ),
-        "Damping c, in N s/m per seat or node, or in N s/m^2 per length.",
+        "Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary.",
     ),
     RESTITUTION,
     Field::new(

@@ -46,14 +46,15 @@ pub(super) struct Limits {
     /// Range of magnitudes, from the flatfile or the header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) magnitude: Option<Range>,
-    /// Range of distances in km: distance to the rupture from the flatfile or, without a flatfile,
-    /// distance to the epicenter from the header.
+    /// Range of distances in km: to the rupture, from the flatfile; without a flatfile, to the epicenter, from the
+    /// header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) distance: Option<Range>,
     /// Range of Vs30 in m/s, from the flatfile or the header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) vs30: Option<Range>,
-    /// Pulse class of eligible records (Shahi and Baker 2014; Baker 2007 for a single horizontal).
+    /// Pulse class of eligible records, according to Shahi and Baker (2014) or, for a single horizontal component,
+    /// Baker (2007).
     #[arg(long, value_enum, default_value_t = Pulses::Any)]
     pulses: Pulses,
 }

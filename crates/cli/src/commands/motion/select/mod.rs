@@ -41,7 +41,7 @@ pub(super) struct SelectArgs {
     /// Target of the spectra; the kinds of targets are listed below.
     #[arg(long, value_name = "TARGET")]
     target: String,
-    /// Period at which Sa is given; must be one of the periods of the table.
+    /// Period at which Sa is given; it must be one of the periods in the table of the ground-motion model.
     #[arg(long, value_name = "TIME")]
     at: Option<String>,
     /// Sa at the period given with --at, such as "0.6 g".
@@ -62,18 +62,18 @@ pub(super) struct SelectArgs {
     /// Kind of spectrum that is compared with the target, for each record.
     #[arg(long, value_enum, default_value_t = Spectrum::Rotd50)]
     spectrum: Spectrum,
-    /// Smallest and largest scale factor.
+    /// Range of permitted scale factors.
     #[arg(long, value_name = "FROM..TO", default_value = "0.25..4")]
     scale: Range,
     #[command(flatten)]
     limits: Limits,
-    /// Maximum number of records of one event.
+    /// Maximum number of records of one earthquake.
     #[arg(long, value_name = "NUMBER")]
     most_of_event: Option<usize>,
-    /// Seed of the simulated spectra.
+    /// Seed of the random spectra that are drawn from the target.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
-    /// Scenario that the study runs.
+    /// Scenario that the study of the selected set runs.
     #[arg(long, value_name = "SCENARIO", default_value = "candia-8-barrels")]
     base: String,
     /// Folder for the set, the study, the page and the table of all records.
