@@ -1,8 +1,8 @@
-//! Assumptions on barrels that burst in a fall, and what they cost.
+//! Assumptions about barrels that burst in a fall, and about their cost.
 
 use barrelstack_fragility::Lognormal;
 
-/// Assumed probability that a full barrel bursts in a fall, as a lognormal function of the height of the fall.
+/// Assumed probability that a full barrel bursts in a fall, as a lognormal function of the fall height.
 ///
 /// No published drop tests of barrels were found. Of the barrels that toppled at Napa in 2014 about one in
 /// ten was lost (Wines & Vines 2016); the levels from which they fell are not recorded. A lognormal function
@@ -12,9 +12,9 @@ use barrelstack_fragility::Lognormal;
 /// barrels above the lowest level burst. Results are also given for medians of 3.5 m and 7 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Breakage {
-    /// Height of fall (m) at which half of the barrels burst.
+    /// Fall height (m) at which half of the barrels burst.
     pub median: f64,
-    /// Standard deviation of the logarithm of the height of fall at which a barrel bursts.
+    /// Standard deviation of the logarithm of the fall height at which a barrel bursts.
     pub dispersion: f64,
 }
 
@@ -38,14 +38,14 @@ impl Breakage {
 /// A barrel of 225 L fills 300 bottles, that is, 25 cases (The Californian 2014).
 const BOTTLE: f64 = 0.75e-3;
 
-/// Assumed lower and upper bound (US$) of the price at which the cellar could have sold a bottle of wine.
+/// Assumed lower and upper bounds (US$) of the price at which the cellar could have sold a bottle of wine.
 const BOTTLE_COST: [f64; 2] = [4.0, 20.0];
 
-/// Assumed lower and upper bound (US$) of the cost of a burst barrel of any size, without its wine.
+/// Assumed lower and upper bounds (US$) of the cost of a burst barrel of any size, without its wine.
 const BARREL_COST: [f64; 2] = [400.0, 1200.0];
 
-/// Returns the lower and upper bound (US$) of the cost of a number of burst barrels and of their wine, whose volume is
-/// `wine` (m³).
+/// Returns the lower and upper bounds (US$) of the cost of a number of burst barrels and of their wine, whose volume
+/// is `wine` (m³).
 pub fn cost(barrels: f64, wine: f64) -> [f64; 2] {
     [0, 1].map(|end| wine / BOTTLE * BOTTLE_COST[end] + barrels * BARREL_COST[end])
 }

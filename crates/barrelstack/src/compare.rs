@@ -44,7 +44,7 @@ pub struct Side {
     pub cut: Option<f64>,
     /// Time (s) of the first loss of a seat.
     pub collapse_time: Option<f64>,
-    /// The moving picture of the run, as a pane of the player.
+    /// Animated scene of the run, as a pane of the player.
     pub pane: Pane,
     /// Histories of the ground motion, the first of which is an acceleration.
     pub ground: Vec<History>,
@@ -90,8 +90,9 @@ pub trait Comparable: Sized {
     /// Returns the results of all variants, in each plane or in three dimensions; `None` where no variants were run.
     fn results(&self) -> Vec<Option<Vec<CaseResult>>>;
 
-    /// Runs another variant, and returns the results with that variant shown; the observer receives the progress and
-    /// may cancel.
+    /// Runs the variant `number`, and returns these results with that variant as the shown run.
+    ///
+    /// The observer receives the progress and may cancel.
     ///
     /// # Errors
     /// When that variant cannot be run.

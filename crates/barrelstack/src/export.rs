@@ -24,7 +24,7 @@ use crate::scenario::{FileRef, MotionSource, RecordSource, Scenario, Vertical, V
 use crate::variants::{Answer, Shown};
 use barrelstack_input::system;
 
-/// Names of the files that every run writes once.
+/// Names of the files that a run writes once, even if it has two planes.
 const FILES: [&str; 5] =
     ["summary.json", "scenario.toml", "variants.csv", "report.html", "columns.csv"];
 const FILES_OF_PLANE: [&str; 5] =
@@ -48,7 +48,7 @@ pub enum ExportError {
         /// Name of a file in the folder.
         file: String,
     },
-    /// A file to be replaced was not written by a run.
+    /// A file to be replaced was not written by an earlier run, or was changed since.
     #[error(
         "{file} in {folder} was not written by an earlier run, or was changed since",
         folder = folder.display()
@@ -247,7 +247,9 @@ impl Folder {
         written.map_err(|(path, error)| ExportError::refused(&path, &error))
     }
 
-    /// Rewrites the report so that it embeds `page`, which contains the program and starts with the scenario.
+    /// Rewrites `report.html` with an embedded page, in which a reader can change the scenario and run it.
+    ///
+    /// `page` is the HTML of the embedded page, which contains the program. The page opens with `scenario`.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -279,7 +281,7 @@ fn first_in(folder: &Path) -> Option<String> {
     names.map(|entry| entry.file_name().to_string_lossy().into_owned()).min()
 }
 
-/// Returns the files of an answer by name, with the report in a language.
+/// Returns the output files of an answer as pairs of name and content. The report is in `language`.
 ///
 /// If there are two planes, each plane has its own histories, forces, envelopes and frames, in files whose names begin
 /// with the name of the plane.
@@ -315,8 +317,8 @@ pub fn files(answer: &Answer, language: Language) -> Result<Vec<(String, Vec<u8>
     Ok(files)
 }
 
-/// Returns the start data of a page that contains the program: the scenario as text, and its records in base64. Records
-/// are named by their file names without folders, so that the page does not depend on paths.
+/// Returns the data with which the page embedded in a report opens: the scenario as text, and its records in base64.
+/// Records are named by their file names without folders, so that the page does not depend on paths.
 fn start_of(scenario: &Scenario) -> Value {
     let mut packed = scenario.clone();
     let mut records = Vec::new();
@@ -338,7 +340,8 @@ fn start_of(scenario: &Scenario) -> Value {
     json!({ "name": "scenario.toml", "text": packed.to_resolved_toml(), "records": records })
 }
 
-/// Writes the times (as `time`) and all channels as arrays, named like the columns of the CSV file.
+/// Returns an NPZ archive of the times (as `time`), all channels and the contact forces. The arrays are named like the
+/// columns of the CSV files, without units.
 fn histories_npz(run: &Run) -> std::io::Result<Vec<u8>> {
     let recording = &run.recording;
     let mut arrays = vec![("time".to_owned(), recording.times.as_slice())];
@@ -380,7 +383,7 @@ fn csv<R: Iterator<Item = Option<f64>>>(
     text
 }
 
-/// Writes one row for the nominal case and for each variant, in each plane.
+/// Returns `variants.csv`: in each plane, one row for the nominal case and one for each variant.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
         "plane,variant,outcome,mode,first_body,first_loss (s),first_fall (s),barrels_fallen,barrels\n",

@@ -61,7 +61,7 @@ pub use barrelstack_stack::{
 };
 pub use summary::Summary;
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

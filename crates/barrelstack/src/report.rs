@@ -52,22 +52,22 @@ pub fn document(run: &Run, summary: &Summary) -> Document {
 
 /// Builds the report of an answer.
 ///
-/// The report describes the governing plane, shows the moving picture of the other plane beside it,
-/// and includes the repeats of the shown run.
+/// The report describes the governing plane, and shows the players of both planes side by side. If the shown run was
+/// repeated with small changes, the report includes the results of these repeats.
 pub fn answer_document(answer: &Answer) -> Document {
     let Answer { decides, other, .. } = answer;
     let variants = (decides.variants.as_ref(), other.as_ref());
     page(&decides.run, &decides.summary, variants)
 }
 
-/// Returns the moving picture of the run that an answer shows, in each of its planes.
+/// Returns the player of the run that an answer shows, with a pane for each of its planes.
 pub fn stage(answer: &Answer) -> Block {
     let Answer { decides: Shown { run, summary, variants, .. }, other, .. } = answer;
     let scene = drawing::scene_among(run, variants.as_ref());
     sections::stage(run, summary, other.as_ref(), &scene)
 }
 
-/// Returns the picture that a page shows before any motion: the stack as assembled, in each of its planes.
+/// Draws the stack as assembled, in each of its planes, for a page that does not show a run yet.
 ///
 /// # Errors
 /// When the stack cannot be assembled.
@@ -105,7 +105,7 @@ fn page(
     }
 }
 
-/// Returns the tone of the verdict.
+/// Returns the kind of verdict, such as [`Tone::Stands`].
 pub(crate) fn tone(run: &Run, summary: &Summary) -> Tone {
     let spreads = summary.spreads();
     if !spreads.is_empty() {

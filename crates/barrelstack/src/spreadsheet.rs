@@ -24,8 +24,8 @@ const DIGITS: usize = 15;
 ///
 /// The first row of a sheet is the header row of the table, and stays in view when the sheet is scrolled. If a column
 /// contains only numbers, its cells are written as numbers; all other cells are written as text, which keeps
-/// identifiers such as the station `058` or a fingerprint unchanged. No text becomes a formula. A text that is longer
-/// than a cell can hold is cut.
+/// identifiers such as the station `058` or a fingerprint unchanged. No string becomes a formula. A string that is
+/// longer than a cell can hold is truncated.
 ///
 /// ```
 /// let book = barrelstack::spreadsheet::workbook(&[("records", "station,pga (m/s2)\n058,3.5\n")])?;
@@ -47,9 +47,9 @@ pub fn workbook(tables: &[(&str, &str)]) -> Result<Vec<u8>, XlsxError> {
     book.save_to_buffer()
 }
 
-/// Returns the table of the provenance: the given facts, then the members of the documents, by name and value.
+/// Returns the provenance as a CSV table of names and values: the rows of `facts`, then the members of the documents.
 ///
-/// A document is the text of a JSON file. If it has a member `provenance`, only this member is listed. The member
+/// Each document is the content of a JSON file. If it has a member `provenance`, only this member is listed. The member
 /// `columns` is left out, since the tables state their columns.
 pub fn provenance(facts: &[(String, String)], documents: &[&str]) -> String {
     let mut rows = facts.to_vec();
@@ -66,7 +66,7 @@ pub fn provenance(facts: &[(String, String)], documents: &[&str]) -> String {
     "name,value\n".to_owned() + &rows.into_iter().map(row).collect::<String>()
 }
 
-/// Appends all members of a value, at every depth, each with its path.
+/// Appends all members of a JSON value, at every depth, to `rows` as pairs of path and value.
 fn listed(path: &str, value: &Value, rows: &mut Vec<(String, String)>) {
     match value {
         Value::Object(members) => {
@@ -84,8 +84,8 @@ fn listed(path: &str, value: &Value, rows: &mut Vec<(String, String)>) {
     }
 }
 
-/// Returns a table with decimal commas, and with semicolons between the columns, as spreadsheet programs of many languages
-/// write CSV.
+/// Rewrites a CSV table with decimal commas, and with semicolons between the columns, as spreadsheet programs write CSV
+/// in many locales.
 ///
 /// ```
 /// let csv = barrelstack::spreadsheet::with_decimal_commas("rack,pga (m/s2)\n\"4,5-bar\",0.5\n");
@@ -115,7 +115,7 @@ pub fn with_decimal_commas(csv: &str) -> String {
     text
 }
 
-/// Iterates over the rows of a table whose cells [`csv_field`] wrote; returns the cells of each row.
+/// Iterator over the rows of a CSV table whose cells [`csv_field`] wrote. Each item has the cells of one row.
 struct Rows<'a>(&'a str);
 
 impl Iterator for Rows<'_> {
@@ -145,7 +145,7 @@ impl Iterator for Rows<'_> {
     }
 }
 
-/// Returns `true` if a text is a number, and not an identifier that consists of digits.
+/// Returns `true` if a string is a number, and not an identifier that consists of digits.
 fn is_number(text: &str) -> bool {
     let digits = text.strip_prefix('-').unwrap_or(text);
     let whole = digits.split(['.', 'e']).next().unwrap_or_default();
@@ -194,16 +194,16 @@ fn fill(sheet: &mut Worksheet, csv: &str) -> Result<(), XlsxError> {
     Ok(())
 }
 
-/// Returns the text of a cell, cut to the number of characters that a cell can hold.
+/// Returns the content of a cell, truncated to the number of characters that a cell can hold.
 #[cfg(feature = "xlsx")]
 fn content(text: &str) -> String {
-    // In CSV, an apostrophe marks a text that would otherwise be a formula. Here the type of the cell marks it.
+    // In CSV, an apostrophe marks a string that would otherwise be a formula. Here the type of the cell marks it.
     let marked =
         text.strip_prefix('\'').filter(|rest| rest.starts_with(['=', '+', '-', '@', '\t', '\r']));
     marked.unwrap_or(text).chars().take(CHARACTERS).collect()
 }
 
-/// Returns a name that a sheet can have: not too long, and without the characters that are not allowed.
+/// Converts a name to a valid sheet name: truncates it, and replaces characters that are not allowed by spaces.
 #[cfg(feature = "xlsx")]
 fn sheet_name(name: &str) -> String {
     let kept = |c: char| {

@@ -97,7 +97,8 @@ pub fn sway_period(scenario: &Scenario) -> Result<Option<f64>, RunFailure> {
 }
 
 impl StabilityRow {
-    /// Returns the row of a scenario in one plane; `None` for a free scene.
+    /// Computes the row of a [`StabilityTable`] for the stack of a scenario, in the plane that the scenario states;
+    /// `None` for a free scene.
     pub fn of(scenario: &Scenario) -> Option<Self> {
         let stack = scenario.stack()?;
         let (stands, refused) = match stability(scenario) {
@@ -212,7 +213,7 @@ fn tilt_at_failure_to(
     failure.map(|failure| (tilt, failure))
 }
 
-/// Returns the failure mode that corresponds to the cause of a failure.
+/// Names the failure mode that corresponds to a cause of failure.
 fn word(lack: &Lack) -> &'static str {
     match lack {
         Lack::Friction { .. } | Lack::Stick { .. } => "slides",

@@ -291,12 +291,12 @@ impl Summary {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn to_json(&self) -> String {
-        // Only maps with keys other than text could fail, and there are none.
+        // Serialization can only fail for maps with keys other than strings, and there are none.
         described::to_json(self).unwrap_or_default()
     }
 }
 
-/// `true` if the numbers of a run are valid; `false` if the computation failed.
+/// Returns `true` if the results of a run are valid, and `false` if its computation failed.
 fn sound(run: &Run) -> bool {
     !matches!(run.outcome, Outcome::Invalid { .. })
 }

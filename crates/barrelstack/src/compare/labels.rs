@@ -8,7 +8,7 @@ use crate::scenario::title::{counted, shakes};
 /// Maximum number of differences in a name; runs with more differences keep their given names.
 const MOST: usize = 2;
 
-/// Kinds of differences that a name can state.
+/// Kind of difference that the name of a run can state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Topic {
     Levels,

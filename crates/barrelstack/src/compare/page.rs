@@ -73,8 +73,8 @@ fn singles(side: &Side) -> impl Iterator<Item = (Option<View>, &Outcome)> {
     shown.chain(side.other.iter().map(|other| (Some(other.view), &other.outcome)))
 }
 
-/// Returns words for the planes in which a single run collapses, such as " (along the barrels)";
-/// empty unless both planes were analyzed.
+/// Names the planes in which a single run collapses, such as " (along the barrels)"; empty unless both planes were
+/// analyzed.
 fn falls_where(side: &Side) -> String {
     let falls = singles(side).filter(|(_, outcome)| outcome.is_collapse());
     let views: Vec<&str> = falls.filter_map(|(view, _)| Some(view?.words())).collect();
@@ -177,8 +177,7 @@ fn effect(sides: &[Side]) -> Option<String> {
     Some(format!("{cause}, {}.", clauses.join("; ")))
 }
 
-/// Returns words for the plane of a paired comparison, such as " across the barrels"; empty unless
-/// both planes were analyzed.
+/// Names the plane of a paired comparison, such as " across the barrels"; empty unless both planes were analyzed.
 fn place(side: &Side, pair: &Paired) -> String {
     let view = View::ALL.into_iter().find(|view| Some(view.name()) == pair.view);
     let both = view.filter(|_| side.other.is_some());

@@ -25,7 +25,7 @@ pub use terminal::{drift_line, final_picture};
 /// A part of a rendering, with its own folder or file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// `figures/`: every figure of the report, with its numbers as CSV; writes `report.md` as well.
+    /// `figures/`: every figure of the report, with its numbers as CSV; also `report.md`.
     Figures,
     /// `report.pdf`: the report for printing.
     Report,
@@ -69,7 +69,7 @@ pub struct Rendering {
     pub dpi: f64,
     /// Paper size of the report.
     pub paper: Paper,
-    /// Number of pictures, and of ParaView time steps, per second of the run (1/s).
+    /// Number of pictures, and of ParaView time steps, per second of simulated time.
     pub rate: f64,
     /// Time interval (s) to render; `None` for the whole run.
     pub between: Option<[f64; 2]>,
@@ -133,7 +133,7 @@ const FASTEST: f64 = 50.0;
 /// Function that writes one file of a series.
 pub type Put<'a> = &'a mut dyn FnMut(Attachment) -> Result<(), ExportError>;
 
-/// A folder for rendered parts, which was checked before the computation.
+/// Output folder of a rendering, which [`RenderFolder::prepare`] has checked.
 #[derive(Clone, Debug)]
 pub struct RenderFolder {
     path: PathBuf,

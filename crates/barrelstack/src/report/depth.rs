@@ -44,12 +44,13 @@ pub(super) fn depth(
 /// A planar section of a stack.
 struct Section<'a> {
     spec: &'a StackSpec,
-    /// Length scale of similitude.
+    /// Length scale by which the dimensions of the full-size stack are multiplied.
     length: f64,
 }
 
 impl Section<'_> {
-    /// Returns a body together with its copies in the parallel sections.
+    /// Returns the three-dimensional body of a planar part. A planar barrel stands for several barrels, so the body is
+    /// drawn at several positions.
     fn body(&self, assembly: &Assembly, index: usize, part: &Part) -> DepthBody {
         let (role, volumes, rows) = match part.kind {
             PartKind::Barrel => (Role::Barrel, vec![self.barrel()], self.rows()),
@@ -72,8 +73,8 @@ impl Section<'_> {
         }
     }
 
-    /// Returns the distances (m) from the plane at which parallel parts lie: the rails if the plane
-    /// is transverse, the barrels if it is longitudinal.
+    /// Returns the offsets (m), perpendicular to the plane, of the parts that lie one behind the other. These are the
+    /// rails if the plane is transverse, and the barrels if it is longitudinal.
     fn away(&self) -> Vec<f64> {
         let rack = &self.spec.rack;
         match self.spec.view {
@@ -173,8 +174,7 @@ impl Section<'_> {
         }
     }
 
-    /// Converts the lines of planar outlines to bars; each line gives one bar for each rail or
-    /// barrel.
+    /// Converts planar outlines to bars. Each line segment gives one bar at each of the offsets `away` from the plane.
     fn plates(&self, outlines: Option<&[Outline]>) -> Vec<Volume> {
         let mut bars = Vec::new();
         for outline in outlines.unwrap_or(&[]) {
@@ -216,10 +216,9 @@ fn rails(rack: &Rack, pitch: f64) -> Vec<f64> {
 
 /// Returns the solids of a rack at full scale, relative to the middle of its underside.
 ///
-/// The outline in the transverse plane is repeated at every rail and given the width of the rail.
-/// Two tubes are assumed to join the beams at their ends, as in the spatial model. `rise` returns
-/// the height (m) of the rail at a position along the barrels. `chocks` states the angle (rad) and
-/// the gap (m) of chocks.
+/// The outline in the transverse plane is extruded to the width of a rail, once for every rail. Two tubes are assumed
+/// to join the beams at their ends, as in the spatial model. `rise` returns the height (m) of the rail at a position
+/// along the barrels. `chocks` contains the angle (rad) and the gap (m) of chocks.
 fn frame(
     spec: &StackSpec,
     (level, pitch): (u32, f64),
@@ -309,12 +308,11 @@ mod tests {
     use crate::assemble::assemble;
     use crate::report::drawing::outlines;
 
-    /// Returns the extent `[lower, upper]` of numbers.
     fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
     }
 
-    /// Returns the extent of solids along an axis.
+    /// Returns the lowest and the highest coordinate of solids along an axis.
     fn along(volumes: &[Volume], axis: usize) -> [f64; 2] {
         extent(volumes.iter().flat_map(|volume| match volume {
             Volume::Tube { ends: [a, b], radius } => {

@@ -47,7 +47,7 @@ pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> 
     })
 }
 
-/// Orients a contact force so that it is the force on the body that it pushes upward.
+/// Selects, of the two opposite forces of a contact, the one that points upward.
 fn pushed(&[x, z, fx, fz]: &[f64; 4]) -> ContactForce {
     let sign = if fz < 0.0 { -1.0 } else { 1.0 };
     ContactForce { x, z, fx: sign * fx, fz: sign * fz }
@@ -115,11 +115,11 @@ pub fn legend(scene: &Scene) -> String {
     legend
 }
 
-/// Displacement (m) below which a body counts as motionless. If no body moves farther, the page
+/// Displacement (m) below which a body counts as motionless. If no body moves farther, the player
 /// opens at the start of the run.
 const STILL: f64 = 1e-3;
 
-/// Returns the instant at which a page opens: the first loss of seat or, if all seats are kept, the
+/// Returns the instant at which the player opens: the first loss of seat or, if all seats are kept, the
 /// largest sideways or upward displacement of a body.
 fn moment(run: &Run) -> Option<Moment> {
     match &run.outcome {

@@ -7,7 +7,7 @@ use crate::scenario::{Scenario, Setting, Source, catalog};
 /// Formats a given input as it was written, followed by its value in SI units if the two differ.
 fn given(scenario: &Scenario, one: &Setting) -> String {
     let value = shown(&one.path, &one.value);
-    // Other texts, such as paths and names, have no value in SI units.
+    // Other strings, such as paths and names, have no value in SI units.
     let is_quantity =
         |text: &str| text.split_once(' ').is_some_and(|(number, _)| number.parse::<f64>().is_ok());
     match scenario.as_written(&one.path) {

@@ -50,7 +50,7 @@ pub(super) fn players(
     }
 }
 
-/// Returns the picture that a page shows before any motion: the stack as assembled, in each plane.
+/// Draws the stack as assembled, in each plane, for a page that does not show a run yet.
 pub(super) fn still(assemblies: &[Assembly]) -> Block {
     let caption = "The stack before the motion, to scale.".to_owned();
     if let [alone] = assemblies {
@@ -67,7 +67,8 @@ pub(super) fn still(assemblies: &[Assembly]) -> Block {
     })
 }
 
-/// Returns the pane of a plane with its letter and name, but without a verdict.
+/// Returns the pane of a plane, with the mark and the name of the plane but without a verdict. The mark is X across the
+/// barrels and Y along the barrels.
 fn of(assembly: &Assembly, scene: Arc<Scene>) -> Pane {
     let (mark, name) = match assembly.view {
         Some(view @ View::Transverse) => ("X", capital(view.words())),

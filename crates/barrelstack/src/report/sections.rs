@@ -43,8 +43,8 @@ pub(super) fn all(
     blocks
 }
 
-/// Builds the collapsed section for engineers: the results of each plane, and the inputs that both
-/// planes share.
+/// Builds the section for engineers: the results of each plane, and the inputs that both planes share. Its parts are
+/// hidden until the reader expands them.
 fn for_engineers(own: (&Run, &Summary, Option<&Variants>), other: Option<&Shown>) -> Vec<Block> {
     const PARTS: &str = "odies, demands, stresses, forces, motion, energies";
     let Some(other) = other else {
@@ -76,7 +76,7 @@ fn for_engineers(own: (&Run, &Summary, Option<&Variants>), other: Option<&Shown>
     ]
 }
 
-/// Returns the moving picture of one plane, or of both planes side by side.
+/// Returns the player of one plane, or the players of both planes side by side.
 pub(super) fn stage(
     run: &Run,
     summary: &Summary,
@@ -199,7 +199,7 @@ pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     standing_until(run.fates.collapse_time()?, series)
 }
 
-/// Works like [`standing_range`], for a stack that collapses at a time (s).
+/// Works like [`standing_range`], for a stack that collapses at the time `collapse` (s).
 pub(crate) fn standing_until(collapse: f64, series: &[Series]) -> Option<[f64; 2]> {
     let until = collapse + 0.5;
     let mut range = [0.0_f64; 2];

@@ -5,7 +5,7 @@ use barrelstack_report::{Block, Cell, Table};
 use crate::demand::{DEMANDS, Demands};
 use crate::summary::{Device, JointSummary};
 
-/// Returns a force (N) in kilonewtons, with two decimals.
+/// Formats a force (N) in kilonewtons, with two decimals.
 fn kilonewtons(value: f64) -> Cell {
     Cell::Measured(1e-3 * value, 2)
 }
@@ -28,7 +28,7 @@ pub fn demand_table(until_loss: &Demands, whole_run: &Demands) -> Table {
     )
 }
 
-/// Returns the time (s) at which a force (N) is largest; empty if the force is zero.
+/// Formats the time (s) of a maximum force (N), with two decimals; the cell is empty if the force is zero.
 fn at(force: f64, time: f64) -> Cell {
     Cell::measured((force != 0.0).then_some(time), 2)
 }

@@ -78,14 +78,13 @@ fn single(run: &Run, summary: &Summary, plane: Option<View>) -> String {
     }
 }
 
-/// Returns the largest utilization of staves until the first loss of seat; `None` if it is at most
-/// 100 %.
+/// Formats the largest utilization of staves until the first loss of seat, in percent; `None` if it is at most 100 %.
 fn crushed(summary: &Summary) -> Option<String> {
     let load = summary.demands.stave_utilization.filter(|load| *load > 1.0)?;
     Some(format!("{:.0} %", 100.0 * load))
 }
 
-/// States that the work was stopped, with the progress so far, and that there is no verdict.
+/// States that the computation was stopped, how far it had progressed, and that there is no verdict.
 pub fn stopped(variants: Option<&Unfinished>, time: f64) -> String {
     match variants {
         Some(Unfinished { done, of }) => format!(
@@ -236,8 +235,8 @@ fn behind(begin: &str, sentence: &str) -> String {
 
 /// Returns the sentences that support the headline.
 ///
-/// If the run was verified, the results of its repeats replace the warning that a single run is only one possible
-/// course.
+/// If the run was verified, the results of its repeats replace the warning that a single run shows only one possible
+/// course of events.
 pub(super) fn details(
     run: &Run,
     summary: &Summary,

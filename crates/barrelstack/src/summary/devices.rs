@@ -50,8 +50,8 @@ impl Devices {
         Self::borne(&assembly.model.elements().iter().zip(devices).zip(&run.elements))
     }
 
-    /// Returns the forces in the elements of a run, each given with the display strings of its
-    /// device.
+    /// Groups the forces in the elements of a run by device. Each item of `elements` contains an element, the display
+    /// strings of its device, and the forces in the element.
     pub fn borne<'a, S: Space + 'a>(
         elements: &(impl Iterator<Item = ((&'a Element<S>, &'static Words), &'a ElementFate)> + Clone),
     ) -> Self {
@@ -74,7 +74,7 @@ impl Devices {
         Self(all_words().map(device).collect())
     }
 
-    /// Returns the elements of a device by its plural name; empty if there is no such device.
+    /// Returns the elements of the device with the plural name `many`; empty if there is no such device.
     pub fn named(&self, many: &str) -> &[ElementSummary] {
         let device = self.0.iter().find(|device| device.words.many == many);
         device.map_or(&[], |device| &device.elements)

@@ -1,4 +1,5 @@
-//! Summary of a three-dimensional run: a JSON document, with directions.
+//! Summary of a three-dimensional run: a JSON document, which includes the directions in which bodies leave their seats
+//! and barrels fall.
 
 use barrelstack_report::described;
 
@@ -174,14 +175,12 @@ described! {
 }
 
 impl Directions {
-    /// Returns two numbers of variants: those in which the first body to leave its seat leaves it across the barrels,
-    /// and those in which it does so along the barrels.
+    /// Returns the numbers of variants whose first loss of seat is across the barrels and along the barrels.
     pub fn first(&self) -> [u32; 2] {
         [self.first_right + self.first_left, self.first_away + self.first_near]
     }
 
-    /// Returns two numbers of fallen barrels: those that fell in the direction across the barrels, and those that fell
-    /// in the direction along the barrels.
+    /// Returns the numbers of fallen barrels that are displaced mainly across and mainly along the barrels.
     pub fn debris(&self) -> [u32; 2] {
         [self.debris_right + self.debris_left, self.debris_away + self.debris_near]
     }
@@ -190,7 +189,7 @@ impl Directions {
 impl SummaryInSpace {
     /// Returns the summary as indented JSON text.
     pub fn to_json(&self) -> String {
-        // Serialization can only fail for maps with non-text keys, and there are none.
+        // Serialization can only fail for maps with keys other than strings, and there are none.
         described::to_json(self).unwrap_or_default()
     }
 }

@@ -66,7 +66,7 @@ impl Remedy {
 
     /// States, for each sufficient change, the range of the share of stacks that fall, as the uncertain constants vary.
     /// If two changes suffice, also names the change with which fewer stacks fall in most random draws of these
-    /// constants, and states the share of such draws. Returns an empty text if a range is unknown.
+    /// constants, and states the share of such draws. Returns an empty string if a range is unknown.
     fn over_constants(&self) -> String {
         let range = |one: &Tried| {
             one.range.map(|[low, high]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high))

@@ -23,7 +23,7 @@ pub enum Advance {
     Variants {
         /// Number of finished variants.
         done: usize,
-        /// Number of all variants.
+        /// Total number of variants.
         of: usize,
     },
     /// Verdict of the variants with the lowest numbers, reported before the others are run.
@@ -42,9 +42,9 @@ pub enum Advance {
 pub enum RunChoice {
     /// The most typical run: the medoid of the nominal case and of all variants.
     Typical,
-    /// The variant of this number; 0 is the nominal case.
+    /// The variant with this number; 0 is the nominal case.
     Number(u32),
-    /// The variant of this number; no other variants are run.
+    /// The variant with this number; no other variants are run.
     Alone(u32),
 }
 
@@ -78,8 +78,9 @@ impl Answer {
         std::iter::once(&self.decides).chain(&self.other)
     }
 
-    /// Runs another variant, and returns the answer with that variant shown; the observer receives
-    /// the progress and may cancel.
+    /// Runs the variant `number`, and returns this answer with that variant as the shown run.
+    ///
+    /// The observer receives the progress and may cancel.
     ///
     /// # Errors
     /// When that variant cannot be run.
@@ -290,7 +291,7 @@ fn number(choice: RunChoice, variants: Option<&Variants>) -> u32 {
     }
 }
 
-/// Runs the selected variants of a scenario, each on its own core.
+/// Runs the selected variant of each plane, in parallel.
 fn run_selected(
     scenario: &Scenario,
     tasks: &[(&Plane, u32)],
@@ -335,8 +336,8 @@ pub(crate) fn run_together<R, T: Send>(
     pool::map(&tasks, work, &|_| ()).into_iter().collect()
 }
 
-/// Returns the severity of a plane as two numbers to compare in order: the share of variants that
-/// collapse (1 for a single run that collapses), and the share of barrels that fall.
+/// Returns the severity of a plane, which is compared lexicographically: the share of variants that collapse (1 for a
+/// single run that collapses), then the share of barrels that fall (the median over the variants).
 fn weight(shown: &Shown) -> (f64, f64) {
     let outcome = &shown.summary.outcome;
     let barrels = outcome.barrels.max(1) as f64;

@@ -124,7 +124,7 @@ const STIFFNESS: &str = "interface.barrel-rack.stiffness";
 const RESTITUTION: &str = "interface.barrel-rack.restitution";
 const DAMPING: &str = "interface.barrel-rack.damping";
 
-/// A constant that the variants draw at random.
+/// A constant whose value is drawn at random for each variant.
 struct Drawn {
     axis: Shared,
     name: &'static str,
@@ -301,7 +301,8 @@ pub struct Constant<'a> {
     pub unit: &'static str,
     /// Standard deviation of the logarithm of the constant.
     pub dispersion: f64,
-    /// Returns the value of the constant (SI) at a standard normal deviate; `None` if there is none.
+    /// Returns the value of the constant (SI) at a standard normal deviate. Returns `None` if the contact law has no
+    /// such constant, or if the distribution of the constant is discrete.
     pub value: Box<dyn Fn(f64) -> Option<f64> + 'a>,
 }
 
