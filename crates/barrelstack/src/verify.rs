@@ -85,7 +85,7 @@ pub trait Repeatable: Sized + Send + Sync {
     /// Runs a scenario; the observer receives the progress and may cancel.
     ///
     /// # Errors
-    /// When the scenario cannot be built or does not stand.
+    /// When the scenario cannot be built, or its stack does not stand by itself.
     fn again(
         scenario: &Scenario,
         observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
@@ -171,7 +171,7 @@ impl Repeatable for Run {
 /// listed as skipped.
 ///
 /// # Errors
-/// When a repeat cannot be built or does not stand.
+/// When a repeat cannot be built, or its stack does not stand by itself.
 pub fn verify<R: Repeatable>(
     base: &R,
     progress: &mut (dyn FnMut(Progress) -> ControlFlow<()> + Send),
@@ -380,7 +380,7 @@ fn apart_at<R: Repeatable>((base, paths): (&R, &[Vec<[f64; 3]>]), other: &R) -> 
     None
 }
 
-/// Evaluates all repeats.
+/// Compares the fall times of every repeat with those of the base run, and combines all repeats into one result.
 fn judge<R: Repeatable>(base: &R, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verification {
     let predictable_until = repeats.iter().filter_map(|repeat| repeat.apart_at).reduce(f64::min);
     let until = predictable_until.unwrap_or(f64::INFINITY);
@@ -465,7 +465,7 @@ impl Verification {
         sentences
     }
 
-    /// Returns the findings as pairs of name and value, as text.
+    /// Returns the findings as pairs of strings: name and value.
     pub fn rows(&self) -> Vec<(String, String)> {
         const UNKNOWN: &str = "not known: no repeat reached its end";
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);

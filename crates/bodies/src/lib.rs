@@ -16,7 +16,7 @@ mod solid;
 pub use body::{BODY, SpatialBody, VISCOUS, Viscous};
 pub use solid::{PART, PartSolid, SOLID, Solid};
 
-/// The example of the README, which is compiled and run as a doc test.
+/// The example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -81,7 +81,7 @@ const UNSEEN: f64 = 0.2;
 /// | `until (s)` | duration of the observation; required if a barrel or the stack still stood |
 /// | `scenario` | scenario of the test, if the tests have different scenarios |
 ///
-/// An empty cell means that the quantity was not observed. Times count from the start of the motion.
+/// An empty cell means that the quantity was not observed. Times are measured from the start of the motion.
 #[derive(Clone, Debug)]
 pub struct Observations {
     file: String,

@@ -172,7 +172,7 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<DropResult, C
     Ok(DropResult { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
 }
 
-/// Draws the rebound height (m) against the drop height (m), measured and fitted.
+/// Plots the measured and the fitted rebound height (m) against the drop height (m).
 fn heights(from: &[f64], to: &[f64], rebound: &dyn Fn(f64) -> f64) -> Figure {
     let centimeters = |values: &[f64]| values.iter().map(|v| 100.0 * v).collect::<Vec<f64>>();
     // The curve spans the measured drops only: after a lower drop the mass may not rebound.
@@ -187,7 +187,7 @@ fn heights(from: &[f64], to: &[f64], rebound: &dyn Fn(f64) -> f64) -> Figure {
     figure("drops", caption, axes, series)
 }
 
-/// Draws the measured and the fitted duration of each flight between two impacts; the impacts are at `times`
+/// Plots the measured and the fitted duration of each flight between two impacts; the impacts are at `times`
 /// (s), and the residuals are in units of `unit` (s).
 fn bounces(times: &[f64], residuals: &[f64], unit: f64) -> Figure {
     let found: Vec<f64> = times.iter().zip(residuals).map(|(t, r)| t + unit * r).collect();

@@ -9,7 +9,7 @@ pub enum CalibrateError {
     /// The table is invalid, or does not determine the parameters.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// The scenario is not suitable for the calibration, for the reason that is given.
+    /// The scenario is not suitable for the calibration; the string states the reason.
     #[error("{0}")]
     Scenario(String),
     /// The first simulation of the fit fails.

@@ -1,4 +1,4 @@
-//! Figures of tests: measurements compared with the fitted parameters.
+//! Figures that compare the measurements of a test with the fit.
 
 use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
 
@@ -7,13 +7,13 @@ use super::Estimate;
 /// Number of intervals into which a fitted curve is divided for drawing.
 const PLACES: usize = 60;
 
-/// Creates a series of single measured values.
+/// Creates a series of measured values, plotted as points.
 pub(super) fn measured(label: &str, x: Vec<f64>, y: Vec<f64>, index: usize) -> Series {
     let style = SeriesStyle { points: true, index: Some(index), ..SeriesStyle::default() };
     Series { style, ..Series::new(label, x, y) }
 }
 
-/// Creates a fitted line.
+/// Creates a series that is plotted as a line, such as fitted values.
 pub(super) fn fitted(label: &str, x: Vec<f64>, y: Vec<f64>, index: usize) -> Series {
     let style = SeriesStyle { index: Some(index), ..SeriesStyle::default() };
     Series { style, ..Series::new(label, x, y) }

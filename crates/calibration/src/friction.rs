@@ -109,7 +109,8 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     })
 }
 
-/// Draws the coefficient of every test and the means, against the normal force if it was measured.
+/// Plots the coefficient of every test, and each mean with its interval. The horizontal axis is the normal force for
+/// pull tests, and the number of the test for tilt tests.
 fn picture(
     table: &Table,
     coefficients: &[Option<Vec<f64>>; 2],

@@ -39,7 +39,7 @@ pub struct Fit {
     pub converged: bool,
 }
 
-/// Start and settings of a fit.
+/// Initial values and settings of a fit.
 #[derive(Clone, Debug)]
 pub struct Start {
     /// Parameters at which the fit starts.

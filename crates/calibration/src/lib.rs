@@ -44,7 +44,7 @@ pub use impact::{Impact, impact};
 pub use parameters::Parameter;
 pub use result::{Calibration, CalibrationDocument, Estimate, ModelShare};
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

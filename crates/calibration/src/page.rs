@@ -4,7 +4,7 @@ use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, signifi
 
 use super::{Calibration, Estimate};
 
-/// What the intervals of a fit to tests cover.
+/// Statement of what the intervals cover, used if [`Calibration::covers`] is `None`.
 const COVERS: &str = "The 95 % intervals cover the scatter of the test. They do not cover errors of the model, or of values that \
                       were given as exact.";
 

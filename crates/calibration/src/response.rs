@@ -38,7 +38,7 @@ const ILL: f64 = 1e3;
 
 /// Fits parameters of a stack to its recorded histories.
 ///
-/// The table has a column `time`, counted from the start of the scenario's motion, and further columns that
+/// The table has a column `time`, measured from the start of the scenario's motion, and further columns that
 /// are named as in `histories.csv`, such as `R1 rotation (rad)` or `B1.1 displacement x (m)`. Displacements
 /// are relative to the ground and to the position at rest. Rows after `until` (s) are ignored.
 ///
@@ -196,7 +196,7 @@ fn weighted(
     })
 }
 
-/// Draws every channel as recorded and as simulated with the fitted parameters.
+/// Plots every channel as recorded and as simulated with the fitted parameters.
 fn pictures(measured: &Measured, residuals: &[f64], scatter: &[f64]) -> Vec<Figure> {
     let fits = by_channel(residuals, measured.times.len()).zip(scatter);
     let mut figures = Vec::new();
@@ -217,7 +217,7 @@ fn pictures(measured: &Measured, residuals: &[f64], scatter: &[f64]) -> Vec<Figu
     figures
 }
 
-/// Returns the estimates and the matrix of their correlations, both in the order of `parameters`.
+/// Returns the estimates and their correlation matrix, both in the order of `parameters`.
 fn estimates(
     simulator: &Simulator<'_>,
     parameters: &[Parameter],

@@ -35,9 +35,9 @@ pub struct ModelShare {
 /// Result of a calibration from one test or several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Calibration {
-    /// Title: the test in one line.
+    /// Title on one line, such as "sag test rack.csv: sag proportional to load".
     pub title: String,
-    /// Parameters.
+    /// Estimated parameters.
     pub estimates: Vec<Estimate>,
     /// Correlation matrix of the estimates, in the order of `estimates`; empty if the parameters are not
     /// fitted together.
@@ -45,12 +45,12 @@ pub struct Calibration {
     /// Condition number of the fit: ratio of the largest to the smallest eigenvalue of the normalized
     /// information matrix; `None` if parameters are not fitted together.
     pub condition: Option<f64>,
-    /// Measurements compared with the fit.
+    /// Figures that compare the measurements with the fit.
     pub figures: Vec<Figure>,
-    /// Shares that the model predicts for the statements; empty for a fit to tests.
+    /// Shares that the model predicts for the statements; empty if the parameters are not estimated from statements.
     pub shares: Vec<ModelShare>,
-    /// Sentences on what the intervals cover and what they do not; `None` for the usual sentences on intervals of a
-    /// test.
+    /// Sentences on what the intervals cover and what they do not; `None` for the default sentences, which apply to a
+    /// calibration from tests.
     pub covers: Option<&'static str>,
     /// Further results for display, as pairs of name and value.
     pub facts: Vec<(String, String)>,
@@ -85,7 +85,7 @@ impl Estimate {
         self.low <= value && value <= self.high
     }
 
-    /// Returns the SI unit of the value; empty for a plain number.
+    /// Returns the SI unit of the value; empty if the value is dimensionless.
     pub(super) fn unit(&self) -> String {
         if self.dimension == Dimension::NONE { String::new() } else { self.dimension.si_unit() }
     }

@@ -104,7 +104,7 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
     })
 }
 
-/// Draws the readings and the fitted line.
+/// Plots the measured sag against the force on one seat, with the fitted line.
 fn picture(sag: Vec<f64>, force: Vec<f64>, give: f64) -> Figure {
     let fit = curve("sag in proportion to load", span(&force), |force| 1e6 * give * force);
     let series = vec![fit, measured("measured", force, sag, 1)];

@@ -122,8 +122,8 @@ pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
     changed
 }
 
-/// Draws friction and contact constants at random; all pairs of bodies of the same materials have
-/// the same friction factor.
+/// Draws friction and contact constants at random. One friction factor applies to all contacts between the same kinds
+/// of bodies, such as barrel and rack, before and after a fall.
 fn constants(laws: &mut StackInterfaces, spread: &Unknowns, point: &Point) {
     let roughen = |axis: Shared, dispersion: f64, interfaces: &mut [&mut Interface]| {
         let factor = point.lognormal(axis, spread, dispersion);

@@ -24,9 +24,9 @@ use crate::scenario::{Scenario, Scene, Setting, Source};
 
 pub use self::search::{ENOUGH, Judged, Verdicts};
 
-/// Pretensions (N) of the straps that are tried.
+/// Strap pretensions (N) that the search can try.
 ///
-/// A manual ratchet for webbing of 50 mm is assumed to reach at most 5 kN: labels of long-handled
+/// A manual ratchet for 50 mm webbing is assumed to reach at most 5 kN: labels of long-handled
 /// ratchets state about 500 daN (STF, standard tension force, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
@@ -100,7 +100,7 @@ described! {
 /// threads; may cancel.
 pub type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// The variants of a changed stack, ready to run for their verdicts.
+/// Variants of a changed stack, prepared to be run in blocks.
 pub trait Trial {
     /// Runs a block of variants, numbered from zero, in every plane.
     ///

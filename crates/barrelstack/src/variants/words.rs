@@ -79,8 +79,8 @@ impl Judgment {
 /// Plane and statistics of variants; the plane is `None` for a three-dimensional model.
 type Placed<'a> = (Option<View>, &'a Spread);
 
-/// Returns the answer for one plane or for both; of two planes, the plane across the barrels is
-/// given first.
+/// Returns the answer for one plane or for both. In `planes`, the plane across the barrels comes before
+/// the plane along the barrels.
 pub fn headline(planes: &[(View, &Spread)]) -> String {
     let placed: Vec<Placed<'_>> =
         planes.iter().map(|(view, spread)| (Some(*view), *spread)).collect();
@@ -230,7 +230,8 @@ pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// Describes the shown run and how the variants differ, for the governing plane.
+/// Describes the run that is shown, the outcome of the stack as stated, and how the variants differ from this stack.
+/// All sentences are about the plane of `summary`.
 pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
     let (Some(spread), Some(imperfections), Some(unknowns)) =
         (&summary.ensemble, scenario.imperfections(), scenario.unknowns())

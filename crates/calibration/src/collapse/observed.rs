@@ -49,7 +49,7 @@ pub(super) struct Observed {
     pub(super) first_fall: Option<Time>,
     /// Names of barrels, and the times at which they fell.
     pub(super) falls: Vec<(String, Time)>,
-    /// End of the observation (s), counted from the start of the motion.
+    /// End of the observation (s), measured from the start of the motion.
     pub(super) until: f64,
 }
 

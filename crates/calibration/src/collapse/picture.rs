@@ -1,4 +1,4 @@
-//! Figures of collapses: observations compared with simulations that are weighted by the posterior.
+//! Figures that compare observed collapses with simulations, which are weighted by the posterior.
 
 use barrelstack_report::{Axis, Figure, Plot, Series};
 
@@ -116,7 +116,7 @@ impl Rows {
         self.names.push(name);
     }
 
-    /// Draws the rows, each beside its observed value.
+    /// Plots the rows, with the observed value of each row if `observed` is given; `None` if there are no rows.
     pub(crate) fn figure(
         self,
         id: &str,

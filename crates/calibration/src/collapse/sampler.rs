@@ -21,7 +21,7 @@ const ROUNDS: usize = 5;
 /// weights.
 const WIDE: f64 = 0.2;
 
-/// Minimum effective number of samples, both for a proposal and for the result. If the effective number is smaller, the
+/// Minimum effective sample size, both for a proposal and for the result. If the effective sample size is smaller, the
 /// likelihood is raised to a power below one.
 const FEWEST: f64 = 40.0;
 
@@ -37,12 +37,12 @@ pub(crate) struct Draw {
 pub(crate) struct Posterior {
     pub(crate) draws: Vec<Draw>,
     pub(crate) weights: Vec<f64>,
-    /// Power to which the likelihood was raised to reach the minimum effective number of samples; usually
+    /// Power to which the likelihood was raised to reach the minimum effective sample size; usually
     /// one. If the power is below one, intervals are wider than they would be with enough samples.
     pub(crate) power: f64,
 }
 
-/// Proposal distribution of a round: normal kernels around centers, each coordinate reflected at the walls of
+/// Proposal distribution of a round: normal kernels around centers, each coordinate reflected at the bounds of
 /// the box.
 struct Proposal {
     count: usize,
@@ -101,7 +101,7 @@ fn numbered(points: Vec<Vec<f64>>, from: usize, seed: u64) -> Vec<Draw> {
     points.into_iter().enumerate().map(seeded).collect()
 }
 
-/// Returns a Latin hypercube: every coordinate axis is divided into `count` equal parts, and each part
+/// Returns a Latin hypercube sample: every coordinate axis is divided into `count` equal parts, and each part
 /// contains one point.
 pub(crate) fn hypercube(count: usize, dimensions: usize, random: &mut Random) -> Vec<Vec<f64>> {
     let mut points = vec![vec![0.0; dimensions]; count];
@@ -145,7 +145,7 @@ fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
 }
 
 /// Returns the weights with the likelihood raised to a power, and this power. It is the largest power, at most one,
-/// that leaves enough effective samples.
+/// for which the effective sample size is large enough.
 fn flattened(logs: &[f64], densities: &[f64]) -> Option<(Vec<f64>, f64)> {
     let whole = weights(logs, densities, 1.0)?;
     if effective(&whole) >= FEWEST {
@@ -160,7 +160,7 @@ fn flattened(logs: &[f64], densities: &[f64]) -> Option<(Vec<f64>, f64)> {
     Some((weights(logs, densities, low)?, low))
 }
 
-/// Returns the effective number of samples by Kish's formula.
+/// Returns the effective sample size by Kish's formula.
 fn effective(weights: &[f64]) -> f64 {
     1.0 / weights.iter().map(|weight| weight * weight).sum::<f64>()
 }
@@ -218,7 +218,7 @@ impl Proposal {
     }
 }
 
-/// Reflects a coordinate at the walls −1 and 1.
+/// Reflects a coordinate into the interval from −1 to 1.
 fn mirrored(mut x: f64) -> f64 {
     // A kernel is narrower than the box, so a few reflections suffice.
     for _ in 0..16 {
@@ -233,7 +233,7 @@ fn mirrored(mut x: f64) -> f64 {
     x.clamp(-1.0, 1.0)
 }
 
-/// Returns the probability density of a normal deviate that is reflected at the walls.
+/// Returns the probability density of a normal deviate that is reflected into the interval from −1 to 1.
 fn mirrored_normal(x: f64, center: f64, width: f64) -> f64 {
     let normal = |x: f64| {
         let off = (x - center) / width;
@@ -251,7 +251,7 @@ impl Posterior {
         Some(Self { draws, weights, power })
     }
 
-    /// Returns the effective number of samples.
+    /// Returns the effective sample size.
     pub(crate) fn effective(&self) -> f64 {
         effective(&self.weights)
     }

@@ -21,7 +21,7 @@ const MOST_MOTION: f64 = 2.0;
 #[error("{0}")]
 pub struct StatementsError(String);
 
-/// All earthquakes of a file of statements.
+/// Contents of a file of statements: earthquakes, each with the statements on it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Statements {
@@ -46,11 +46,11 @@ pub struct Earthquake {
     /// Names of the studies of `validation/field.md` that simulate the earthquake; empty if there is no record.
     #[serde(default)]
     pub studies: Vec<String>,
-    /// The statements.
+    /// Statements on the stacks in this earthquake.
     pub observation: Vec<Statement>,
 }
 
-/// One statement.
+/// Statement on the stacks in an earthquake, such as the share that fell.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Statement {
@@ -70,7 +70,7 @@ pub struct Statement {
     /// plane of the same stack; the stack counts as fallen if it falls in at least one plane.
     #[serde(default)]
     pub studies: Vec<String>,
-    /// Heights (numbers of levels) of the observed stacks, in unknown proportions.
+    /// Heights (numbers of levels) of the observed stacks. The proportions of stacks of each height are unknown.
     #[serde(default)]
     pub levels: Vec<usize>,
     /// The observed share.
@@ -89,7 +89,7 @@ pub struct Statement {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// Share of the barrels on the floor.
+    /// Share of all barrels that lie on the floor.
     Barrels,
     /// Share of the stacks that fell.
     Stacks,
@@ -105,7 +105,7 @@ pub enum Kind {
     Unusable,
 }
 
-/// Likelihood of a statement as a function of a share.
+/// Likelihood of a statement as a function of the share of stacks that fell, or of barrels that lie on the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Likelihood {
     /// Normal distribution about the observed share.
@@ -117,16 +117,16 @@ pub enum Likelihood {
     },
     /// The share of the stacks that fell is at least about `value`.
     AtLeast {
-        /// The value.
+        /// Approximate lower bound of the share.
         value: f64,
-        /// Standard error.
+        /// Standard error of `value`.
         error: f64,
     },
     /// The share of the stacks that fell is at most about `value`.
     AtMost {
-        /// The value.
+        /// Approximate upper bound of the share.
         value: f64,
-        /// Standard error.
+        /// Standard error of `value`.
         error: f64,
     },
     /// At least one of a number of stacks fell.
@@ -161,7 +161,8 @@ impl Likelihood {
         error.is_finite() && error > 0.0
     }
 
-    /// Returns the likelihood with an additional, independent error of the model, added in quadrature.
+    /// Returns the likelihood with a larger standard error: `model`, the standard deviation of an independent model
+    /// error, is added in quadrature. [`Likelihood::One`] is returned unchanged.
     #[must_use]
     pub fn wider(self, model: f64) -> Self {
         let wider = |error: f64| libm::hypot(error, model);
@@ -313,7 +314,7 @@ impl Statement {
         })
     }
 
-    /// Returns what the statement counts.
+    /// Returns a phrase for what the statement counts, such as "barrels on the floor".
     pub fn subject(&self) -> &'static str {
         if self.kind == Kind::Barrels { "barrels on the floor" } else { "stacks that fall" }
     }

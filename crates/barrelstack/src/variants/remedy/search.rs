@@ -4,11 +4,11 @@
 //!
 //! Variants are counted in whole blocks, in the order of their numbers. Counting runs as they
 //! finish would be biased towards collapses, because runs that collapse end early. A change is
-//! rejected after the first block that brings it above the admissible number of failures. The share
-//! of a rejected change is unknown: the counted variants are a biased sample, because counting
-//! stopped due to their failures. The share of a change that ran all its variants has an interval
-//! that holds simultaneously for all changes and planes of the search (Bonferroni), so choosing
-//! among the changes does not invalidate the interval.
+//! rejected after the first block that brings it above the admissible number of failures. The
+//! failure share of a rejected change is unknown: the counted variants are a biased sample, because
+//! counting stopped due to their failures. If all variants of a change were counted, its failure
+//! share has a confidence interval. These intervals hold simultaneously for all changes and planes
+//! of the search (Bonferroni), so choosing among the changes does not invalidate them.
 
 use std::ops::{ControlFlow, Range};
 
@@ -58,7 +58,7 @@ impl Plan {
     }
 }
 
-/// Counts of the variants of a change that was tried.
+/// Numbers of counted and of failed variants of a change that was tried, with the verdicts.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counts {
     /// Number of counted variants; these are the variants with the lowest numbers.
@@ -90,7 +90,7 @@ impl Counts {
         !may_fail(self.failed, plan.variants)
     }
 
-    /// `true` if all variants were counted, so that the share is that of an unbiased sample.
+    /// `true` if all variants were counted, so that they are an unbiased sample.
     pub(super) fn whole(&self, plan: &Plan) -> bool {
         plan.variants > 0 && self.ran == plan.variants
     }
@@ -109,7 +109,7 @@ impl Counts {
 /// Result of a search.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
-    /// Counts of every change of the plan; `None` for changes that were not tried.
+    /// Counts for every change of the plan; `None` for a change that was not tried.
     pub(super) counts: Vec<Option<Counts>>,
     /// `true` if the search was not canceled.
     pub(super) complete: bool,
@@ -122,7 +122,8 @@ pub type Verdicts = Vec<Vec<Option<bool>>>;
 /// Verdicts of a block of variants, or `Break` if the block was canceled.
 pub type Judged = ControlFlow<(), Verdicts>;
 
-/// Function that runs a block of variants, numbered from zero, of a change given by its index.
+/// Function that runs a block of variants of one change. Its arguments are the index of the change and the numbers of
+/// the variants, which start from zero.
 type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Judged, E> + 'a;
 
 /// Tries changes until the highest sufficient stack and the loosest sufficient straps are found.
@@ -190,7 +191,7 @@ impl<E> Search<'_, '_, E> {
     }
 }
 
-/// `true` if a number of failures is admissible among a number of variants.
+/// `true` if at most `100 − ENOUGH` percent of `of` variants failed.
 fn may_fail(failed: u32, of: u32) -> bool {
     u64::from(failed) * 100 <= u64::from(of) * u64::from(100 - ENOUGH)
 }

@@ -1,4 +1,4 @@
-//! Sentences on the range of the share of collapses as the uncertain constants of the seats vary.
+//! Sentences on how much the share of collapses varies with the uncertain constants of the seats.
 
 use super::{Placed, percent};
 use crate::variants::{ShareAt, Spread};
@@ -11,9 +11,9 @@ const NARROW: f64 = 0.1;
 /// fractiles, or greater than both, by at least this difference.
 const BEYOND: f64 = 0.1;
 
-/// Describes the range of the share of collapses as the uncertain constants vary, and the decisive constant, such as
-/// "Depending on the friction, stiffness and damping of the seats, which are uncertain, 31 to 100 % of such stacks fall
-/// in the direction along the barrels; the stiffness of seats decides the outcome: …".
+/// Describes the range over which the share of collapses varies with the uncertain constants, and states which constant
+/// is decisive: "Depending on the friction, stiffness and damping of the seats, which are uncertain, 31 to 100 % of
+/// such stacks fall in the direction along the barrels; the stiffness of seats decides the outcome: …".
 pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
     let [low, high] = spread.range?;
     let place = view.map_or_else(String::new, |view| format!(" in the direction {}", view.words()));
