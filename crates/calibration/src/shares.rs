@@ -28,7 +28,7 @@ pub use statements::{
     Earthquake, Kind, Likelihood, MODEL_ERROR, Statement, Statements, StatementsError,
 };
 
-/// What the intervals cover.
+/// Sentences on what the intervals cover and what they do not.
 const COVERS: &str = "The 95 % intervals cover the uncertainty of the statements, of the motion in the cellar and of the \
                       proportions of stacks of each height, and a model error of 10 % in each share. They do not cover \
                       values of the scenario that were not fitted.";
@@ -68,8 +68,8 @@ struct Shaken {
 /// Fitted share of stacks that fall, as a function of the parameters, the motion and the height.
 struct Fit {
     share: Conditional,
-    /// For every height of stacks, the mean share of barrels that fall in a falling stack; if no stack of this height
-    /// fell, the mean over all heights.
+    /// For each height, the mean share of the barrels that fall if a stack falls; if no stack of this height fell, the
+    /// mean over all heights.
     fallen: Vec<f64>,
     /// Numbers of levels, standardized to mean 0 and variance 1; empty if there is only one height.
     heights: Vec<f64>,
@@ -77,15 +77,19 @@ struct Fit {
 
 /// Estimates parameters of a stack from statements on how many stacks fell in an earthquake.
 ///
-/// `heights` holds one scenario for every number of levels that a statement names. Each of `settings.simulations`
-/// parameter sets is drawn from the prior ranges and used to simulate one stack of one of these heights, with random
-/// offsets of its bodies. The motion of the scenario is multiplied by a random factor, because the shaking in a cellar
-/// differs from that at the station ([`Earthquake::motion`]). A probit regression of second degree gives the share of
-/// stacks that fall as a function of the parameters, the factor and the height. Then 20 000 parameter sets are weighted
-/// by the likelihood of the statements. Each set has one factor of the motion that is common to all statements, one
-/// sample of the regression, and random proportions of stacks of each height, for which all mixtures are equally
-/// probable; the likelihood includes an error of the model itself ([`MODEL_ERROR`]). The intervals hold the central
-/// 95 % of the weight.
+/// `heights` holds one scenario for every number of levels that a statement names. The estimation has three steps:
+///
+/// 1. `settings.simulations` parameter sets are drawn from the prior ranges. With each set, one stack of one of these
+///    heights is simulated, with random offsets of its bodies. The motion of the scenario is multiplied by a random
+///    factor, because the shaking in a cellar differs from that at the station ([`Earthquake::motion`]).
+/// 2. A probit regression of second degree is fitted to the results. It gives the share of stacks that fall as a
+///    function of the parameters, the factor and the height.
+/// 3. Another 20 000 parameter sets are drawn from the prior ranges and weighted by the likelihood of the statements.
+///    Each set has one factor of the motion for all statements, and one sample of the regression. For each statement,
+///    the proportions of stacks of each height are drawn at random; all mixtures are equally probable. The likelihood
+///    includes a model error ([`MODEL_ERROR`]).
+///
+/// The intervals of the parameters contain the central 95 % of the weight.
 ///
 /// The result is a function of the statements, the scenarios and the settings, independent of the number of threads.
 /// `report` is called from several threads with the number of completed simulations and the total, and may
@@ -189,8 +193,10 @@ pub fn shares(
     })
 }
 
-/// Returns a statement as facts: its text, source and uncertainty, how it is used, and the shares that the model
-/// predicts.
+/// Returns the facts on a statement as pairs of name and value ([`Calibration::facts`]): its text, its source, its
+/// uncertainty, how it is used, and the shares that the model predicts.
+///
+/// `before` and `given` are the prior and the posterior predictive interval ([`Weighed::predicted`]).
 fn stated(one: &Statement, before: [f64; 2], given: [f64; 2]) -> Vec<(String, String)> {
     let range = |[low, high]: [f64; 2]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high);
     let error = match (one.low.zip(one.high), one.error) {
@@ -216,7 +222,7 @@ fn stated(one: &Statement, before: [f64; 2], given: [f64; 2]) -> Vec<(String, St
     ]
 }
 
-/// Simulates one stack for each parameter set; stacks that fall at rest and runs that fail are left out.
+/// Simulates one stack for each parameter set. Stacks that fall under their own weight and runs that fail are left out.
 fn shake(
     earthquake: &Earthquake,
     statements: &[&Statement],
@@ -271,7 +277,7 @@ fn fallen(course: &Course) -> Option<f64> {
 }
 
 impl Fit {
-    /// Fits the results; `None` if there are too few.
+    /// Fits the share of stacks that fall to the results of the simulations; `None` if there are too few results.
     fn new(shaken: &[Shaken], heights: &[Height], seed: u64) -> Option<Self> {
         let levels: Vec<f64> = heights.iter().map(|height| height.levels as f64).collect();
         let middle = levels.iter().sum::<f64>() / levels.len() as f64;
@@ -306,7 +312,10 @@ impl Fit {
     }
 }
 
-/// Returns a parameter set as deviates of unit variance: a uniform number within ±1 has the variance 1/3.
+/// Returns the parameters, the motion and, if given, the height as deviates of unit variance.
+///
+/// The parameters are uniform within ±1 and have the variance 1/3, so they are multiplied by √3. The motion and the
+/// height have unit variance already.
 fn deviates(point: &[f64], motion: f64, height: Option<&f64>) -> Vec<f64> {
     let parameters = point.iter().map(|x| 3.0_f64.sqrt() * x);
     parameters.chain([motion]).chain(height.copied()).collect()
@@ -318,7 +327,7 @@ struct Weighed {
     posterior: Posterior,
     /// For each statement, the share that the model predicts with every parameter set.
     shares: Vec<Vec<f64>>,
-    /// Mean likelihood of each statement over all sets, 1 at most.
+    /// Mean likelihood of each statement over all parameter sets; at most 1.
     likelihoods: Vec<f64>,
 }
 
@@ -368,8 +377,8 @@ impl Weighed {
         Some(Self { posterior: Posterior::of(draws, &logs)?, shares, likelihoods: sums })
     }
 
-    /// Returns two intervals that hold the central 90 % of the predicted shares for a statement: before the statements
-    /// are used, and given all statements.
+    /// Returns the prior and the posterior predictive interval of the share in the statement at an index. Each interval
+    /// contains the central 90 % of the predictions. The posterior takes all statements into account.
     fn predicted(&self, at: usize) -> [[f64; 2]; 2] {
         let even = vec![1.0; DRAWS];
         [&even, &self.posterior.weights].map(|weights| {
@@ -390,8 +399,7 @@ impl Weighed {
         })
     }
 
-    /// Draws the shares that the model predicts, before the statements are used and given all statements, beside the
-    /// stated shares.
+    /// Plots the prior and the posterior predictive interval of each share, with the stated shares.
     fn figure(&self, statements: &[&Statement]) -> Option<Figure> {
         let mut rows = Rows::default();
         let mut stated = Vec::new();

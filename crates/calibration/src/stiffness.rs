@@ -1,4 +1,4 @@
-//! Stiffness `k` from a press test, in which the penetration is measured against the force.
+//! Stiffness `k` from a press test, in which the force is measured as a function of penetration.
 
 use barrelstack::scenario::Dimension;
 use barrelstack_fragility::student_quantile;
@@ -17,8 +17,8 @@ const CLEARLY: f64 = 10.0;
 ///
 /// δ₀ is the seating offset: the reading at which the surfaces first touch. The scatter is attributed to the
 /// force, with the same variance in every row. `nodes` is the number of contact nodes that share the force;
-/// `k` is the stiffness of one node. `interface` is the name of the interface in the lines for a scenario,
-/// such as "barrel-rack".
+/// `k` is the stiffness of one node. `interface` is the name of the interface, such as "barrel-rack", in
+/// [`Calibration::scenario`].
 ///
 /// # Errors
 /// If the table lacks a column, has fewer than three rows, or its force does not grow with penetration.
@@ -102,7 +102,7 @@ pub fn stiffness(
     })
 }
 
-/// Draws the readings and the fitted line.
+/// Plots the readings and the fitted line.
 fn picture(penetration: &[f64], force: &[f64], slope: f64, offset: f64) -> Figure {
     let scaled = |values: &[f64], by: f64| values.iter().map(|v| by * v).collect::<Vec<f64>>();
     let depth = scaled(penetration, 1e3);

@@ -23,8 +23,8 @@ const HALVINGS: u32 = 24;
 /// Fits the stiffness of all seats of a stack to the period of its sway.
 ///
 /// The table has the column `period`, with one row per tap. `scenario` is the stack that was tapped, in the
-/// plane in which it swayed; the stiffnesses of its seats keep their ratios. The interval is that of the mean
-/// period, by Student's t distribution.
+/// plane in which it swayed. The stiffnesses of all seats are multiplied by the same factor. The interval of the
+/// stiffness follows from the 95 % interval of the mean period (Student's t distribution).
 ///
 /// # Errors
 /// If the table lacks its column or has fewer than two rows, the scenario is not a stack in one plane whose contact
@@ -158,7 +158,7 @@ fn basis(law: &Interface) -> &'static str {
     if law.basis == Basis::Seat { "seat" } else { "node" }
 }
 
-/// Returns the damping (N·s/m) of a linear contact law; `None` if the law states a restitution instead.
+/// Returns the damping (N·s/m) of a linear contact law; `None` if the law has a coefficient of restitution instead.
 fn damping(law: &Interface) -> Option<f64> {
     let (NormalLaw::SpeedGap { damping, .. } | NormalLaw::KelvinVoigt { damping, .. }) = law.normal
     else {
@@ -167,7 +167,7 @@ fn damping(law: &Interface) -> Option<f64> {
     if let Damping::Coefficient(damping) = damping { Some(damping) } else { None }
 }
 
-/// Draws the period of every tap, and the mean.
+/// Plots the period of every tap, and the mean.
 fn picture(periods: &[f64], mean: &Estimate) -> Figure {
     let taps: Vec<f64> = (1..=periods.len()).map(|tap| tap as f64).collect();
     let ends = [0.5, periods.len() as f64 + 0.5];

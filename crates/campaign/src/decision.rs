@@ -124,7 +124,7 @@ pub enum DecisionError {
         /// Text of the cell.
         found: String,
     },
-    /// The hazard curve cannot be used.
+    /// The hazard curve is unsuitable, for example because it is for another intensity measure than the study.
     #[error(transparent)]
     Hazard(#[from] TableError),
     /// The folder of the study cannot be read.
@@ -162,8 +162,8 @@ impl Gathering {
         self.cases.add(table)
     }
 
-    /// Computes the decision after all rows were added; `made` is the provenance of the study with the final
-    /// number of rows.
+    /// Evaluates the study once all rows are added; `made` is the provenance of the study with the final number of
+    /// rows.
     fn decide(self, made: &Provenance, request: &Request) -> Result<Decision, DecisionError> {
         let cases = self.cases.finish()?;
         let effects = sensitivity::effects(&self.factors, made, &cases);
@@ -201,7 +201,7 @@ impl Gathering {
     }
 }
 
-/// Computes the decision of a study whose table is in memory.
+/// Evaluates a study whose table is in memory.
 ///
 /// Random resampling starts from the seed of the study, so that the same study always gives the same page.
 ///
@@ -214,7 +214,7 @@ pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, Deci
     gathering.decide(&collected.provenance, request)
 }
 
-/// Computes the decision of the study in a folder, finished or not, and returns it with the provenance of its rows.
+/// Evaluates the study in a folder, finished or not, and returns the decision with the provenance of its rows.
 ///
 /// The table is read in parts, so that it need not be held in memory.
 ///

@@ -40,7 +40,7 @@ pub struct Request {
     pub rack: String,
     /// Name of the barrel in the catalog.
     pub barrel: String,
-    /// Files of further records.
+    /// Paths of the user's own records, in addition to the bundled record.
     pub records: Vec<PathBuf>,
     /// Number of synthetic motions, in addition to the bundled record.
     pub synthetic: u32,
@@ -114,8 +114,8 @@ pub struct AtLevel {
     pub interval: Interval,
     /// Mean share of the barrels that fall.
     pub fallen: f64,
-    /// Range that contains, with a probability of 95 %, the share of collapses, given the uncertain constants of the
-    /// seats and the sampling error; `None` if it is unknown.
+    /// Range that contains the share of collapses with a probability of 95 %. It covers the uncertain constants of the
+    /// seats and the sampling error. `None` if it is unknown.
     pub range: Option<[f64; 2]>,
 }
 
@@ -158,7 +158,7 @@ pub struct AsRecorded {
     pub levels: u32,
     /// Direction of the shaking.
     pub direction: Direction,
-    /// Name of the horizontal component.
+    /// Name of the horizontal component of the bundled record.
     pub motion: String,
     /// `true` if the stack collapsed.
     pub collapsed: bool,
@@ -235,7 +235,7 @@ pub enum HeightsError {
 /// Runs the studies of every height in every direction and evaluates them.
 ///
 /// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report`
-/// receives the number of finished runs and the total, and may cancel.
+/// receives the number of finished runs and the total, and may cancel the run.
 ///
 /// # Errors
 /// If the rack, the barrel or the height is unknown, the rack is not supported in three dimensions, a record cannot be

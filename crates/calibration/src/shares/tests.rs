@@ -1,4 +1,4 @@
-//! Coverage of the intervals for stacks whose chance to fall is known in closed form.
+//! Coverage of the intervals for stacks whose probability of falling is known in closed form.
 #![allow(clippy::print_stdout, reason = "the coverage is shown")]
 
 use barrelstack::scenario::Scenario;
@@ -7,7 +7,7 @@ use barrelstack_motion::Random;
 
 use super::{Fit, Height, Kind, Shaken, Statement, Statements, Weighed};
 
-/// Chance that a stack falls: the closed form that takes the place of simulations.
+/// Returns the probability that a stack falls, in closed form. It replaces the simulations.
 fn chance(point: &[f64], motion: f64, levels: usize) -> f64 {
     normal(0.2 - 1.8 * point[0] + 0.5 * point[1] + 0.6 * motion + 0.7 * (levels as f64 - 5.0))
 }
@@ -27,9 +27,9 @@ fn statement(kind: &str, numbers: &str) -> Statement {
     read.earthquake[0].observation[0].clone()
 }
 
-/// Every campaign draws true parameters, a true motion and a true mixture of heights, "simulates" 300 stacks by the
-/// closed form, and states the true share with an error of 1 %. The fit adds the error of the model to this error,
-/// although the closed form has no such error.
+/// For each campaign, true parameters, a true motion and a true mixture of heights are drawn at random. The results of
+/// 300 simulated stacks are drawn from the closed form ([`chance`]). The statement gives the true share with a standard
+/// error of 1 %. The fit adds the model error to this error, although the closed form has no model error.
 #[test]
 fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     let heights = heights(&[4, 5, 6]);

@@ -164,7 +164,7 @@ pub struct Cases {
     /// Index of the measure of the study in `measures`.
     pub main: usize,
     /// `true` if every motion was scaled to a requested level of the study's intensity measure. The share of cases that
-    /// collapse can then be counted at each level.
+    /// collapse can then be computed at each level.
     pub leveled: bool,
     /// `true` for an incremental dynamic analysis, in which each level depends on the results of earlier runs.
     pub hunted: bool,
@@ -363,7 +363,10 @@ impl Reading {
         Ok(())
     }
 
-    /// Returns the cases after all rows were added.
+    /// Returns the cases of all added rows.
+    ///
+    /// # Errors
+    /// If no case has a verdict.
     pub(super) fn finish(self) -> Result<Cases, DecisionError> {
         let Self { mut cases, records, modes, rows, own, .. } = self;
         if cases.all.is_empty() {
@@ -427,8 +430,8 @@ impl Cases {
         }
     }
 
-    /// `true` if the numbers of fallen barrels are known, that is, if almost every case was simulated until nothing
-    /// moved.
+    /// Returns `true` if the numbers of fallen barrels are known, that is, if almost every case was simulated until
+    /// nothing moved.
     pub fn has_losses(&self) -> bool {
         self.endings.no_losses().is_none()
     }
@@ -439,12 +442,12 @@ impl Cases {
         self.only(|case| case.followed)
     }
 
-    /// Groups the cases by intensity, ascending.
+    /// Groups the cases by intensity, in ascending order.
     ///
     /// If cases share levels, the groups are the levels of the study. Otherwise the groups are bins with equal numbers
     /// of neighboring cases, and the intensity of a bin is the geometric mean over its cases. A bin has at least 24
     /// cases (or all cases, if there are fewer), because the fraction of failures in a smaller bin would be too
-    /// uncertain. There are at most 16 bins, because a trend is clearest in about a dozen bins.
+    /// uncertain. There are at most 16 bins, because a trend is easiest to recognize with about a dozen.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&JudgedCase>)> {
         let mut sorted: Vec<(f64, &JudgedCase)> = self
             .all
@@ -471,7 +474,7 @@ impl Cases {
         found
     }
 
-    /// `true` if each level of a measure is shared by several cases.
+    /// Returns `true` if several cases share each level of a measure.
     pub fn shares_levels(&self, measure: usize) -> bool {
         if !self.leveled || self.hunted || measure != self.main {
             return false;

@@ -22,11 +22,12 @@ const DRAWS: usize = 500;
 /// Method of a confidence band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BandKind {
-    /// Jackknife over records, since cases of one record may depend on each other.
+    /// Jackknife over records, since the cases of one record may be correlated.
     Records,
-    /// Profile likelihood of independent cases, used if all cases are of one record.
+    /// Profile likelihood of independent cases, used if all cases come from one record.
     Likelihood,
-    /// No band: for at least one record, the cases of all other records do not determine a curve.
+    /// No band: there are several records, but the jackknife fails ([`leave_one_out`]). It fails, for example, if the
+    /// cases do not determine a curve once one of the records is omitted.
     None,
 }
 
@@ -39,7 +40,7 @@ pub struct LimitCurve {
     pub measure: usize,
     /// Numbers of cases and failures at each level or in each bin.
     pub stripes: Vec<Stripe>,
-    /// Wilson's interval for each raw fraction.
+    /// Wilson score interval of each raw fraction.
     pub intervals: Vec<Interval>,
     /// Fitted curve, or the reason why there is none.
     pub fit: Result<Fit, FitError>,
@@ -139,8 +140,8 @@ impl LimitCurve {
         })
     }
 
-    /// `true` if the fraction of failures decreases significantly in some range of intensity. No fragility curve can
-    /// describe such a decrease.
+    /// Returns `true` if the fraction of failures decreases significantly in some range of intensity. A fragility curve
+    /// cannot describe such a decrease.
     pub fn violates_order(&self) -> bool {
         self.monotony.p < 0.05
     }

@@ -16,7 +16,7 @@ use crate::study::Provenance;
 pub struct Exported {
     /// Name and text of each file.
     pub files: Vec<(&'static str, String)>,
-    /// Notes on parts that are missing or were changed, each with a reason.
+    /// Notes on what was omitted or changed in the export, each with a reason.
     pub notes: Vec<String>,
 }
 
@@ -62,8 +62,7 @@ fn foreign(name: &str) -> Option<Foreign> {
     }
 }
 
-/// Exports the curves of a decision for other programs; `asset` is the name under which these programs know
-/// one stack.
+/// Exports the curves of a decision for other programs; `asset` is the name that a stack gets in these programs.
 ///
 /// # Errors
 /// If the other programs do not support the measure, or no limit state has a fitted curve.
@@ -177,7 +176,7 @@ fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> St
 }
 
 /// Converts a name to a Pelicun identifier of up to 75 characters: letters, digits and underscores, and
-/// points after the first character.
+/// dots after the first character.
 fn pelicun_identity(text: &str) -> String {
     let known =
         |(at, c): &(usize, char)| c.is_ascii_alphanumeric() || *c == '_' || (*at > 0 && *c == '.');

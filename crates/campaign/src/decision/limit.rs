@@ -14,7 +14,7 @@ pub enum LimitState {
 }
 
 impl LimitState {
-    /// `true` if it is known whether a case reached the limit state.
+    /// Returns `true` if it is known whether a case reached the limit state.
     pub(super) fn is_known(&self, case: &JudgedCase) -> bool {
         match self {
             Self::SeatLost => true,
@@ -22,7 +22,7 @@ impl LimitState {
         }
     }
 
-    /// `true` if a case reached the limit state.
+    /// Returns `true` if a case reached the limit state.
     pub fn reached(&self, case: &JudgedCase) -> bool {
         match self {
             Self::SeatLost => case.collapsed,

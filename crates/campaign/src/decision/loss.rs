@@ -9,7 +9,7 @@ use super::curve::{LEVEL, interpolate};
 /// Assumed probability that a full barrel bursts, as a function of the largest force (N) on the barrel after
 /// it fell.
 ///
-/// The function has not been tested. It corresponds to the central assumption of [`Breakage`] for a barrel of
+/// The function has not been validated by drop tests. It corresponds to the central assumption of [`Breakage`] for a barrel of
 /// 269 kg that falls freely on the floor.
 ///
 /// With the default impact law of scenarios, 1.2 × 10⁹ N/m^1.5, a fall from 5 m gives a force of 2.2 MN. The force

@@ -9,11 +9,12 @@ use super::cases::Cases;
 pub struct MeasureRow {
     /// Index of the measure in [`Cases::measures`].
     pub measure: usize,
-    /// Index of the measure against which sufficiency is tested; `None` if there is no other measure for this test.
+    /// Index of the second measure in the test of sufficiency: `measure` is sufficient if the second measure adds no
+    /// information on collapse or drift. `None` if there is no second measure, so that sufficiency is not tested.
     pub beside: Option<usize>,
     /// Fit of collapse against the measure, or the reason why there is no curve.
     pub collapse: Result<Measured, FitError>,
-    /// Regression of the drift of the top against the measure, for stacks that stood.
+    /// Regression of the peak drift ratio of the top on the measure, for stacks that stood.
     pub drift: Option<Demanded>,
 }
 

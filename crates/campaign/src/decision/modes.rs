@@ -12,7 +12,7 @@ pub struct ModeIncidence {
     pub mode: String,
     /// Number of cases and of collapses in this mode, for each level or bin.
     pub stripes: Vec<Stripe>,
-    /// Wilson's interval for each fraction.
+    /// Wilson score interval of each fraction.
     pub intervals: Vec<Interval>,
     /// Probability of collapse in this mode, at each intensity of [`LimitCurve::grid`].
     ///

@@ -40,8 +40,8 @@ pub struct Level {
     pub interval: Interval,
 }
 
-/// `true` if two intensities are the same level. A tolerance is needed because levels are rounded when they
-/// are written as text.
+/// Returns `true` if two intensities belong to the same level. A tolerance is needed because levels are rounded when
+/// they are written as text.
 pub(super) fn alike(one: f64, other: f64) -> bool {
     (one - other).abs() < 1e-6 * one
 }

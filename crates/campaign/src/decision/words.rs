@@ -44,8 +44,10 @@ pub(crate) fn left_out(lost: usize, runs: usize) -> Option<String> {
     })
 }
 
-/// Returns a sentence on stacks that fall under their own weight, to be placed before another sentence; empty
-/// if there are no such stacks.
+/// Returns a sentence on stacks that fall under their own weight, followed by a space; empty if there are no such
+/// stacks.
+///
+/// `fallen` is the number of these stacks, `of` is the total number, and `what` is what is counted, such as "runs".
 pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
     let (falls, they) = match fallen {
         0 => return String::new(),
@@ -55,7 +57,7 @@ pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
     format!("{fallen} of {of} {what} {falls} own weight, before {they} shaken. ")
 }
 
-/// Formats a rate as a mean interval in years between events.
+/// Formats an annual rate of collapse as a return period, such as "a collapse once in 500 years".
 fn recurrence(rate: f64) -> String {
     if rate <= 0.0 {
         return "no collapse".to_owned();

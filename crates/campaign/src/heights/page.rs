@@ -86,8 +86,8 @@ fn named(velocity: f64) -> String {
     format!("{} shaking ({})", felt.collect::<Vec<_>>().join(" "), shaking(velocity))
 }
 
-/// Returns the results of stacks with a number of levels at a given PGV (m/s), in the direction in which the upper
-/// bound of the probability of collapse is larger.
+/// Returns the results of stacks of `levels` levels at a given PGV (m/s), in the direction with the higher upper bound
+/// of the probability of collapse.
 fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
     let directions = all.request.directions().into_iter();
     directions
@@ -163,8 +163,8 @@ fn in_planes<'a>(all: &Heights, planes: &'a str, space: &'a str) -> &'a str {
     if all.request.in_space { space } else { planes }
 }
 
-/// Returns the words that add a direction to a sentence, such as ", along the barrels"; empty for three-dimensional
-/// shaking, whose results are not divided by direction.
+/// Returns the direction as a phrase to insert in a sentence, such as ", along the barrels"; empty for
+/// three-dimensional shaking, whose results are not given by direction.
 fn inserted(direction: Direction) -> String {
     match direction {
         Direction::Plane(view) => format!(", {}", view.words()),
@@ -172,8 +172,8 @@ fn inserted(direction: Direction) -> String {
     }
 }
 
-/// Returns the results of stacks with a number of levels at a given PGV (m/s), in the direction in which the range over
-/// the uncertain constants has the larger upper end.
+/// Returns the results of stacks of `levels` levels at a given PGV (m/s), in the direction in which the range over the
+/// uncertain constants of the seats has the higher upper end; `None` if a direction has no such range.
 fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel, [f64; 2])> {
     let found = |direction| {
         let height = all.of(levels, direction)?;
@@ -226,8 +226,8 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
     )
 }
 
-/// Tabulates the range of the probability of collapse over the uncertain constants, in the direction in which its upper
-/// end is higher.
+/// Tabulates the range of the probability of collapse over the uncertain constants of the seats, in the direction in
+/// which the range has the higher upper end.
 fn over_constants_table(all: &Heights) -> Table {
     by_height(
         all,
@@ -246,8 +246,8 @@ fn over_constants_table(all: &Heights) -> Table {
     )
 }
 
-/// Returns the directions in which stacks of two levels are not rated low at a given PGV (m/s), such as ", along the
-/// barrels".
+/// Returns a phrase with the directions in which stacks of two levels are not rated low at a given PGV (m/s), such as
+/// ", along the barrels"; empty if there are no such directions, or for three-dimensional shaking.
 fn weaker(all: &Heights, velocity: f64) -> String {
     let low = |direction: &Direction| {
         let at = all.of(LOWEST, *direction).and_then(|height| height.at(velocity));
@@ -277,8 +277,7 @@ fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     )
 }
 
-/// Formats a bound as a whole percentage, so that rounding may understate the bound by up to half a percentage
-/// point.
+/// Formats an upper bound as a whole percentage. Rounding may understate the bound by up to half a percentage point.
 fn bound(high: f64) -> String {
     format!("{:.0} %", 100.0 * high)
 }
@@ -553,11 +552,11 @@ fn medians(all: &Heights) -> Figure {
     )
 }
 
-/// Maximum ratio of a fitted median to the highest level of shaking that was run. The cases do not determine a higher
-/// median, so that such a median is not reported.
+/// Maximum ratio of a reported median to the highest level of shaking in the study. The cases do not determine a higher
+/// fitted median, which is therefore not reported.
 const MOST_BEYOND: f64 = 2.0;
 
-/// Returns the fitted curve if the cases determine its median.
+/// Returns the fitted curve if the cases determine its median ([`MOST_BEYOND`]).
 fn determined(curve: &LimitCurve) -> Option<&Fit> {
     let highest = curve.stripes.iter().map(|stripe| stripe.intensity).fold(0.0, f64::max);
     curve.fit.as_ref().ok().filter(|fit| fit.curve.median <= MOST_BEYOND * highest)

@@ -38,9 +38,10 @@ fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
     }
 }
 
-/// Returns an effect of the uncertain constants in which the friction of barrels is decisive. The range of the share of
-/// stacks that collapse begins at 0. It ends at 2 % times the number of levels across the barrels, and at 4 % times the
-/// number of levels along them.
+/// Returns an effect of the uncertain constants in which the friction of barrels is decisive.
+///
+/// The range of the share of stacks that collapse begins at 0. For shaking across the barrels, it ends at 2 % times the
+/// number of levels; for any other direction, at 4 % times that number.
 fn effect(levels: u32, direction: Direction) -> Fitted {
     let across = direction == Direction::Plane(View::Transverse);
     let highest = f64::from(levels) * if across { 0.02 } else { 0.04 };
