@@ -37,7 +37,7 @@ pub use uncertain::Fitted;
 use barrelstack::{ensemble, ground, outcome, pool, run, scenario, watch};
 use barrelstack_input::{measured, system};
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// Example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

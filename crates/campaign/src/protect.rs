@@ -103,8 +103,10 @@ pub struct Ranked {
     /// Number of barrels that fall, averaged over the levels of shaking; for a site, the mean number per
     /// year.
     pub fallen: Estimate,
-    /// Number of barrels that burst under the central assumption, averaged over the levels of shaking; for a
-    /// site, the mean number per year.
+    /// Number of barrels that burst, averaged over the levels of shaking; for a site, the mean number per year.
+    ///
+    /// The number follows from the central one of the three assumptions about breakage
+    /// ([`Breakage::RANGE`](barrelstack::breakage::Breakage::RANGE)).
     pub burst: Estimate,
     /// Reduction of the number of fallen barrels compared with the unprotected stack, under the same motions;
     /// `None` for the unprotected stack.
@@ -118,7 +120,7 @@ pub struct Ranked {
     pub motions: usize,
     /// Number of runs, in both directions.
     pub runs: usize,
-    /// Number of runs without a verdict.
+    /// Number of runs that are left out because they have no verdict, for example because they failed.
     pub left_out: usize,
     /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub fallen_at_rest: usize,
@@ -127,8 +129,8 @@ pub struct Ranked {
     /// `true` if the protection is on the Pareto front: no other protection that was run in all rounds costs
     /// at most as much and loses fewer barrels.
     pub on_front: bool,
-    /// Description of the worst state of maintenance, and the number of barrels that fall in it; `None` if no
-    /// such state was tried.
+    /// Description of the worn state in which the most barrels fall, and the number of barrels that fall in it; `None`
+    /// if no worn state was tried.
     pub worn: Option<(String, Estimate)>,
     /// Range that contains, with a probability of 95 %, the probability of collapse (for a site, the annual rate of
     /// collapse), given the uncertain constants of the seats and the sampling error. `None` if it is unknown, or if the
@@ -253,13 +255,13 @@ pub enum ProtectError {
         /// Intensity measure of the hazard curve.
         measure: String,
     },
-    /// The scenario is not valid after the changes of a protection.
+    /// The scenario is not valid after a protection has been applied.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// The motion of the scenario cannot be read.
     #[error(transparent)]
     Ground(#[from] GroundError),
-    /// A stack cannot be built, or does not stand.
+    /// A stack cannot be built, or does not stand under its own weight.
     #[error(transparent)]
     Stack(#[from] RunFailure),
     /// A study cannot be run.
@@ -284,7 +286,8 @@ pub struct Reached {
 /// Tries all protections of a stack and ranks them.
 ///
 /// The studies are stored in folders below `folder`, so that an interrupted ranking resumes from there.
-/// `report` is called with the progress from several threads, and may cancel.
+/// `report` receives the progress and is called from several threads. It cancels the ranking by returning
+/// [`ControlFlow::Break`].
 ///
 /// # Errors
 /// If the scenario has no stack, a record cannot be read, or a folder cannot be written.

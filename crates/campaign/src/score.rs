@@ -37,7 +37,7 @@ pub use protocol::{Protocol, State};
 pub enum Capacity {
     /// The velocity is that of the fitted curve, with its 95 % interval if the records determine an interval.
     Fitted(f64, Option<Interval>),
-    /// The share of collapses rises above one in ten between these two levels. The lower level counts for the score.
+    /// The share of collapses rises above one in ten between these two levels. The lower level determines the score.
     ///
     /// Used if no curve can be fitted because there is at most one level at which some stacks collapse and
     /// others stand.
@@ -113,7 +113,7 @@ pub struct Scored {
     pub curve: LimitCurve,
     /// Number of runs.
     pub runs: usize,
-    /// Number of runs without a verdict.
+    /// Number of runs that are left out because they have no verdict, for example because they failed.
     pub left_out: usize,
     /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub fallen_at_rest: usize,
@@ -148,7 +148,7 @@ impl Scored {
     }
 }
 
-/// Rounds down a velocity (cm/s).
+/// Rounds a velocity (cm/s) down to an integer.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -163,7 +163,8 @@ fn whole(velocity: f64) -> u32 {
 pub struct Sheet {
     /// The scored scenario, with the number of levels that the protocol requires.
     pub scenario: Scenario,
-    /// Number of levels that the scenario states. The scored stack has the number of levels of the protocol instead.
+    /// Number of levels of the stack in the given scenario. The scored stack has the number of levels of the protocol
+    /// instead.
     pub stated_levels: u32,
     /// Protocol of the score.
     pub protocol: Protocol,
@@ -174,7 +175,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Returns the result for the weakest state and direction.
+    /// Returns the result for the state and direction with the lowest capacity, which determines the score.
     pub fn weakest(&self) -> Option<&Scored> {
         let by = |a: &&Scored, b: &&Scored| a.capacity.velocity().total_cmp(&b.capacity.velocity());
         self.rows.iter().min_by(by)
@@ -195,8 +196,9 @@ impl Sheet {
         (0..count).map(least).collect()
     }
 
-    /// Returns the range (cm/s) that contains the score with a probability of 95 %, given the uncertain constants and
-    /// the sampling error; rounded outward. Without uncertain constants it is the 95 % interval of the weakest row.
+    /// Returns the range (cm/s, rounded outward) that contains the score with a probability of 95 %, given the
+    /// uncertain constants and the sampling error. Without uncertain constants, it is the 95 % interval of
+    /// [`Sheet::weakest`].
     pub fn range(&self) -> Option<[u32; 2]> {
         let draws = self.draws();
         let found =
@@ -205,8 +207,8 @@ impl Sheet {
         Some([whole(low + 1e-6), whole((high - 1e-6).ceil())])
     }
 
-    /// Returns the uncertain constant with the largest effect on the share of collapses in the weakest row; `None` if
-    /// no constant is decisive ([`Fitted::decisive`]).
+    /// Returns the uncertain constant with the largest effect on the share of collapses in the runs of
+    /// [`Sheet::weakest`]; `None` if no constant is decisive ([`Fitted::decisive`]).
     pub fn decisive(&self) -> Option<&Unknown> {
         self.weakest()?.effect.as_ref()?.decisive()
     }
@@ -237,7 +239,7 @@ pub enum ScoreError {
     /// The motion of the scenario cannot be read.
     #[error(transparent)]
     Ground(#[from] GroundError),
-    /// A stack cannot be built, or does not stand.
+    /// A stack cannot be built, or does not stand under its own weight.
     #[error(transparent)]
     Stack(#[from] RunFailure),
     /// A study cannot be run.
@@ -262,7 +264,7 @@ pub enum ScoreError {
 /// A stack to be scored, with the studies of all its states and directions.
 struct Prepared {
     stack: Scenario,
-    /// Number of levels that the scenario states.
+    /// Number of levels of the stack in the given scenario.
     stated_levels: u32,
     protocol: Protocol,
     studies: Vec<(State, Direction, Study)>,
@@ -271,7 +273,8 @@ struct Prepared {
 /// Scores the rack and the devices of a scenario.
 ///
 /// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report`
-/// receives the number of finished runs and the total, and may cancel.
+/// receives the number of finished runs and the total number of runs. It cancels the runs by returning
+/// [`ControlFlow::Break`].
 ///
 /// # Errors
 /// If the scenario has no stack, a state cannot be built, or a folder cannot be written.
@@ -316,7 +319,6 @@ fn prepared(scenario: &Scenario, protocol: &Protocol) -> Result<Prepared, ScoreE
 }
 
 impl Prepared {
-    /// Returns the number of runs.
     fn cases(&self) -> u64 {
         self.studies.iter().map(|(.., study)| study.cases()).sum()
     }

@@ -1,4 +1,4 @@
-//! Protections of a stack: changes of the scenario, with their costs and their worn states.
+//! Protections of a stack: changes to the scenario, with their costs and their worn states.
 
 use barrelstack::device::{Cost, DEVICES, Each, Setting};
 
@@ -13,7 +13,7 @@ pub enum Kind {
     Height,
     /// Other racks.
     Rack,
-    /// A device; the text is the name of the device in the singular.
+    /// A device. The string is the name of the device in the singular.
     Device(&'static str),
     /// Two protections of different kinds together.
     Pair,
@@ -41,7 +41,7 @@ pub struct Protection {
     pub key: String,
     /// Name for display.
     pub name: String,
-    /// Changes, as overrides of the scenario.
+    /// Overrides that apply the protection to the scenario.
     pub changes: Vec<String>,
     /// Lower and upper cost for one stack (US$).
     pub cost: [f64; 2],
@@ -157,8 +157,8 @@ pub(crate) fn slug(name: &str) -> String {
 
 /// Combines two protections: the second is applied to the stack that results from the first.
 ///
-/// Returns `None` if both are of one kind, since they then change the same fields, or if the second does not
-/// fit the resulting stack.
+/// Returns `None` if both are of the same kind, since they then change the same fields. Also returns `None` if one of
+/// them is the unprotected stack or itself a pair, or if the second does not fit the resulting stack.
 pub(super) fn pair(
     scenario: &Scenario,
     one: &Protection,

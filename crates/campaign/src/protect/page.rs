@@ -45,8 +45,8 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
     }
 }
 
-/// Returns the situation to which the estimates refer, such as "per year at this site" or "in shaking of 25, 50, 75
-/// cm/s".
+/// Returns a phrase that states what the estimates refer to, such as "per year at this site" or "in shaking of 25, 50,
+/// 75 cm/s".
 fn per(all: &Ranking) -> String {
     match &all.request.shaking {
         Shaking::Site(_) => "per year at this site".to_owned(),
@@ -359,8 +359,7 @@ fn chart(all: &Ranking) -> Figure {
     )
 }
 
-/// Tabulates the changes of each protection in the scenario, so that readers can try the protection
-/// themselves.
+/// Tabulates the changes that each protection makes to the scenario, so that readers can try the protection themselves.
 fn changes(all: &Ranking) -> Table {
     let tried = all.all.iter().map(|one| &one.protection);
     Table::of(

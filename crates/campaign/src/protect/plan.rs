@@ -21,7 +21,7 @@ pub(crate) const NAPA: &str = "[[motion]]\n\
      components = [\"horizontal-1\", \"horizontal-2\"]\n\
      each = { vertical = \"UP\" }\n\n";
 
-/// Returns the name that the folder of a study has within the folder of the protection.
+/// Returns the name of the folder of a study, which lies in the folder of the protection. `round` is counted from 0.
 pub(super) fn name(direction: &str, round: u32) -> String {
     format!("{direction}-{}", round + 1)
 }
@@ -46,7 +46,7 @@ pub(super) fn study(
 
 /// Returns the study of a stack under motions that are scaled to levels of peak ground velocity (m/s).
 ///
-/// Uncertain parameters are drawn for each run from the seed. `Until` determines when runs end.
+/// Uncertain parameters are drawn for each run from the seed. `until` determines when a run ends.
 ///
 /// # Errors
 /// If a record cannot be read.

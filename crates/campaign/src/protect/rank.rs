@@ -42,7 +42,7 @@ pub(super) struct Runs {
     pub(super) left_out: usize,
     /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub(super) fallen_at_rest: usize,
-    /// The runs with the constants that were drawn for them.
+    /// Drawn constants, motion, intensity and verdict of each run, from which the effect of the constants is estimated.
     sample: Sample,
     /// For each level, the number of runs that collapse and the total number of barrels that fall in these runs.
     collapses: Vec<(f64, f64)>,
@@ -63,7 +63,7 @@ pub(super) struct Over {
 pub struct Estimate {
     /// Mean over all motions. For each motion, the results at the levels of shaking are weighted and added.
     pub mean: f64,
-    /// Lower end of the 95 % interval, clustered by motion.
+    /// Lower end of the 95 % interval, which treats the runs under one motion as a cluster.
     pub low: f64,
     /// Upper end of the 95 % interval.
     pub high: f64,

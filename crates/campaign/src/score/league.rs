@@ -22,7 +22,7 @@ pub struct Contender {
     pub name: String,
     /// "rack" or "device".
     pub kind: &'static str,
-    /// Changes of the scenario, as overrides.
+    /// Overrides that change the scenario to this rack or device.
     pub changes: Vec<String>,
 }
 
@@ -72,7 +72,7 @@ fn on_rack(stack: &StackSpec, rack: &crate::scenario::Rack) -> Vec<String> {
 /// Scores every rack and every device of the catalog, in stacks like that of the scenario.
 ///
 /// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report` receives
-/// the number of finished runs and the total, and may cancel.
+/// the number of finished runs and the total number of runs. It cancels the runs by returning [`ControlFlow::Break`].
 ///
 /// # Errors
 /// If the scenario has no stack, if nothing can be scored, or if a folder cannot be written.

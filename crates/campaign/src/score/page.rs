@@ -59,7 +59,7 @@ pub(super) type OnScale = (String, u32, Option<[u32; 2]>);
 /// Scores of the racks of the catalog, from `validation/league`, without devices.
 const REFERENCES: &str = include_str!("references.csv");
 
-/// Returns the scores of the catalog's racks, for comparison with scores from runs in planes.
+/// Returns the scores of the catalog's racks, for comparison with scores from two-dimensional runs.
 pub(super) fn references() -> Vec<OnScale> {
     let row = |line: &str| {
         let mut cells = line.split(',');

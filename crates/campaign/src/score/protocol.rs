@@ -21,7 +21,7 @@ pub struct Protocol {
     pub periods: Vec<f64>,
     /// Number of synthetic motions.
     pub synthetic: u32,
-    /// Seed of the synthetic motions and of the random friction.
+    /// Seed of the synthetic motions and of the constants that are drawn for each run.
     pub seed: u32,
     /// Probability of collapse that defines the score.
     pub chance: f64,
@@ -37,17 +37,17 @@ const WET: f64 = 0.2;
 pub struct State {
     /// Name for display.
     pub name: String,
-    /// Changes of the scenario in this state, as overrides.
+    /// Overrides that put the stack of the scenario into this state.
     pub changes: Vec<String>,
 }
 
 impl Protocol {
     /// Returns the protocol of the RockScore.
     ///
-    /// Stacks of four levels are shaken by six velocity pulses, both components of the bundled record and
-    /// sixteen synthetic motions, at six levels. The friction, stiffness and damping of seats are drawn from
-    /// the same distributions as for variants. In version 1 only friction was drawn, with less scatter, and
-    /// constants were stated per contact element.
+    /// Stacks with four levels of barrels are shaken by six velocity pulses, both components of the bundled record and
+    /// sixteen synthetic motions. Each motion is scaled to six levels of peak ground velocity. The friction, stiffness
+    /// and damping of seats are drawn from the same distributions as for the variants of a stack. In version 1, only
+    /// friction was drawn, with less scatter, and contact constants were stated per contact element.
     pub fn rockscore() -> Self {
         Self {
             name: "rockscore/2".to_owned(),
@@ -72,8 +72,7 @@ impl Protocol {
         Self { name, periods, synthetic: self.synthetic / step, ..self }
     }
 
-    /// Returns the protocol under the name that applies to a stack. For a three-dimensional stack, the name contains
-    /// `-space`.
+    /// Returns the protocol, renamed for the given stack: for a three-dimensional stack, the name contains `-space`.
     pub(super) fn of(&self, stack: &Scenario) -> Self {
         if !stack.is_spatial() {
             return self.clone();
@@ -95,7 +94,7 @@ impl Protocol {
         self.periods.len() + 2 + self.synthetic as usize
     }
 
-    /// Returns the states to be scored: as good as new, with wet cradles, and with each device worn.
+    /// Returns the states to be scored: in new condition, with wet cradles, and with each device worn.
     pub fn states(&self, scenario: &Scenario) -> Vec<State> {
         let state = |name: &str, changes: Vec<String>| State { name: name.to_owned(), changes };
         let friction = |field: &str| format!("interface.barrel-rack.friction.{field}={WET}");

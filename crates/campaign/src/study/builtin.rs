@@ -16,7 +16,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     ALL.iter().map(|(name, _)| *name)
 }
 
-/// Returns the text of the built-in study with a name; `None` if there is no such study.
+/// Returns the text of the built-in study with the given name; `None` if there is no such study.
 pub fn get(name: &str) -> Option<&'static str> {
     ALL.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }

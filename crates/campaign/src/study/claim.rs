@@ -1,4 +1,4 @@
-//! Claims of chunks: a process keeps a file in the folder locked while it works on a chunk.
+//! Claims on chunks: a process keeps a file in the folder locked while it works on a chunk.
 //!
 //! The lock is an operating-system lock (`flock`), which also works on network file systems. It is released
 //! when the process ends for any reason, so that another process can take over the chunk. A suspended process
@@ -13,7 +13,7 @@ use std::time::Duration;
 use super::error::StudyError;
 use crate::system;
 
-/// Exclusive claim of a chunk, which is released on drop.
+/// Exclusive claim on a chunk, which is released on drop.
 #[derive(Debug)]
 pub(super) struct Claim {
     path: PathBuf,

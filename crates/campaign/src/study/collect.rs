@@ -33,7 +33,7 @@ pub struct Status {
     pub provenance: Provenance,
     /// Numbers of finished cases by outcome.
     pub tally: Tally,
-    /// Numbers of the chunks that still have to be run, in ascending order.
+    /// Indices of the chunks that still have to be run, in ascending order.
     pub missing: Vec<usize>,
 }
 

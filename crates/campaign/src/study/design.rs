@@ -60,10 +60,10 @@ pub enum Design {
 }
 
 impl Design {
-    /// `true` if the cases are a sample of the stated distributions, so that the share of collapsed cases
+    /// Returns `true` if the cases are a sample of the stated distributions, so that the share of collapsed cases
     /// estimates the probability of collapse.
     ///
-    /// `false` if levels are requested, or if cases differ from each other in a single quantity.
+    /// Returns `false` if levels are requested, or if cases differ from each other in a single quantity.
     pub fn is_sample(&self) -> bool {
         matches!(self, Self::LatinHypercube { .. } | Self::Sobol { .. } | Self::MonteCarlo { .. })
     }
@@ -86,9 +86,9 @@ impl Design {
 /// Description of a case before its model is built.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PlannedCase {
-    /// Number of the case in the table; the numbers in an adaptive design have gaps.
+    /// Number of the case in the table. In an adaptive design, the numbers are not consecutive.
     pub(super) number: u64,
-    /// Identity of the case, which does not depend on the number of cases. It is also the seed of the random
+    /// Identifier of the case, which does not depend on the number of cases. It is also the seed of the random
     /// draws for the case.
     pub(super) id: u64,
     /// Index of the motion in the study.
@@ -227,7 +227,7 @@ impl Cases {
     }
 }
 
-/// Removes the last digit of a number in the given base and returns it.
+/// Removes the least significant digit of `rest` in the given base and returns it.
 #[expect(clippy::cast_possible_truncation, reason = "below the length of a list")]
 fn digit(rest: &mut u64, base: usize) -> usize {
     let digit = *rest % base as u64;
@@ -259,7 +259,7 @@ fn crossed(study: &Study, number: u64) -> PlannedCase {
     PlannedCase { number, id, motion, level, settings }
 }
 
-/// Returns the name of the sampling axis for the deviate that all factors of a correlated group share.
+/// Returns the name of the sampling axis that all factors of a correlated group share.
 fn common(group: usize) -> String {
     format!("correlation {}", group + 1)
 }
@@ -395,8 +395,8 @@ impl Study {
         &self.levels
     }
 
-    /// Returns the identity of a case in a crossed design. It depends on the contents of the case and not on
-    /// its position.
+    /// Derives the identifier of a case from its motion, level and factor values, so that the identifier does not
+    /// depend on the position of the case in the design.
     fn identity(&self, motion: usize, level: Option<f64>, settings: &[Option<Setting>]) -> u64 {
         let mut words = vec![format!("case of {}", self.motions[motion].name)];
         words.extend(

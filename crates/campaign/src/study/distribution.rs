@@ -48,7 +48,7 @@ enum Shape {
 struct Cut {
     /// Smallest and largest value that remain after truncation.
     values: [f64; 2],
-    /// Probability below each of these two values in the untruncated distribution.
+    /// Probability below each of the two `values` in the untruncated distribution.
     below: [f64; 2],
 }
 

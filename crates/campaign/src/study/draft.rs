@@ -28,7 +28,7 @@ static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Removes the temporary files of this process before it exits.
 ///
-/// The lock is never released, so that no thread can begin another file.
+/// The lock on the list of temporary files is never released, so that no thread can begin another file.
 pub fn remove_drafts() {
     let drafts = system::taken(&DRAFTS);
     for draft in drafts.iter().flat_map(|drafts| drafts.iter()) {
@@ -45,10 +45,10 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    /// Creates a temporary file from which the file `whole` will be made.
+    /// Creates a temporary file, which [`Draft::name`] renames to `whole`.
     ///
-    /// The name of the temporary file is unique, so that a process that cleans the folder never removes a
-    /// different draft with the same name.
+    /// The name of the temporary file is unique. Otherwise, a process that cleans the folder could remove a different
+    /// draft with the same name.
     pub(super) fn create(whole: &Path) -> std::io::Result<Self> {
         let name = whole.file_name().unwrap_or_default().to_string_lossy();
         let mut tries = 0_u32;

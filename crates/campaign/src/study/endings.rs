@@ -1,4 +1,4 @@
-//! Endings of cases: numbers of cases that were followed until nothing moved, and of cases that were stopped
+//! Endings of the cases of a study: how many cases were followed until nothing moved, and how many were stopped
 //! earlier.
 
 use std::fmt::Write as _;
@@ -17,7 +17,7 @@ use crate::watch::{Ending, after_collapse};
 /// Numbers of cases with a verdict: those that were followed until nothing moved, and those that were stopped earlier.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Endings {
-    /// Number of all cases with a verdict.
+    /// Total number of cases with a verdict.
     pub judged: u64,
     /// Number of cases that were simulated until nothing moved. By then the ground was still; after a
     /// collapse, an acceleration of the ground of at most 0.02 g was allowed.
@@ -71,7 +71,8 @@ impl Endings {
     /// losses are reported.
     const MOST_MOVING: f64 = 0.02;
 
-    /// Returns the reason why the falls in the cases are unknown; `None` if the falls are known.
+    /// Returns the reason why no losses are reported: the falls in some cases are not known. Returns `None` if losses
+    /// are reported.
     pub fn no_losses(&self) -> Option<String> {
         let Self { judged, stopped, short, moving, .. } = *self;
         if stopped > 0 {

@@ -184,7 +184,7 @@ fn matching(
     Ok(names.into_iter().map(path).collect())
 }
 
-/// `true` if a name matches a pattern, in which `*` stands for any number of characters and `?` for one
+/// Returns `true` if a name matches a pattern, in which `*` stands for any number of characters and `?` for one
 /// character; case is ignored.
 fn matches(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) =

@@ -35,7 +35,8 @@ pub enum StudyError {
     Folder {
         /// Path of the folder.
         folder: PathBuf,
-        /// What was found in the folder and what to do, as a predicate whose subject is the path.
+        /// What is wrong with the folder and how to correct it. The phrase follows the path in the error message, as in
+        /// "is a file, not a folder; name a folder".
         reason: String,
     },
     /// A shard is damaged.
@@ -70,7 +71,7 @@ impl From<parquet::errors::ParquetError> for StudyError {
 }
 
 impl StudyError {
-    /// Returns a function that wraps system errors of an action on a path.
+    /// Returns a function that converts an I/O error to [`StudyError::System`], for the action `doing` on `path`.
     pub(crate) fn system(
         doing: &'static str,
         path: &Path,

@@ -53,7 +53,8 @@ pub struct Progress {
     pub damaged: usize,
     /// `true` if the manifest of the folder was damaged and has been rewritten.
     pub manifest_healed: bool,
-    /// Number of a chunk that another process is running, while this process has no chunk left to run.
+    /// Index of a chunk for which this run waits, because another process is running that chunk and this process has no
+    /// other chunk left to run.
     pub waits_for: Option<usize>,
 }
 
@@ -125,9 +126,9 @@ impl Study {
     /// Several processes may run the same study in a folder at the same time; each chunk is run by a single
     /// process.
     ///
-    /// `report` is called from several threads, after each case and many times a second in between, and may
-    /// cancel the run. Finished chunks are kept, so that the next run resumes from them. The table does not
-    /// depend on the number of threads.
+    /// `report` is called from several threads, after each case and many times a second in between. It cancels the run
+    /// by returning [`ControlFlow::Break`]. Finished chunks are kept, so that the next run resumes from them. The table
+    /// does not depend on the number of threads.
     ///
     /// # Errors
     /// If a motion cannot be read, the folder belongs to another study, or a file cannot be written;

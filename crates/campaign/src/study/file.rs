@@ -32,7 +32,7 @@ const MOST_CASES: u64 = 10_000_000;
 /// bytes.
 const MOST_STRATA: usize = 50_000_000;
 
-/// Size of chunks if each case or hunt takes a long time.
+/// Size of chunks in a study with few cases per chunk, because each case or each hunt takes a long time.
 const FEW: Sizes = Sizes::Given(8);
 
 impl Study {
@@ -53,9 +53,10 @@ impl Study {
         read(&Opened::parse(source_name, text)?, None)
     }
 
-    /// Reads a study whose text the program has generated; the caller has named the records.
+    /// Reads a study from generated text. The paths of its records come from the caller.
     ///
-    /// Errors do not state a place in the text, since the user does not know the text. They may quote the records.
+    /// Errors state no location in the text, since the user does not know the text. They may quote the content of the
+    /// records, since the caller has named these files.
     pub(crate) fn written(name: &str, text: &str) -> Result<Self, StudyError> {
         let mut study = Self::parse(&format!("{name}.toml"), text).map_err(|error| {
             let StudyError::File(error) = error else { return error };
@@ -69,8 +70,8 @@ impl Study {
         Ok(study)
     }
 
-    /// Reads a study from text like [`Study::parse`], without opening files. `fetch` returns the bytes of a
-    /// record for its path.
+    /// Reads a study from text, as [`Study::parse`] does, but without opening files. `fetch` returns the bytes of the
+    /// record at a path.
     ///
     /// ```
     /// use barrelstack_campaign::Study;
@@ -249,7 +250,7 @@ fn possible(study: &Study, opened: &Opened) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// Loads into memory the files of all motions.
+/// Loads the files of all motions into memory.
 fn hold(study: &mut Study, fetch: Fetch<'_>) -> Result<(), StudyError> {
     let mut base = study.scenario(&[])?.motion;
     for motion in &mut study.motions {
@@ -410,7 +411,8 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
     Ok(Intensity { measure, levels })
 }
 
-/// Reads the `[design]` table. Returns the design, the size of chunks if it is stated, and the intensity.
+/// Reads the `[design]` table, and checks that `intensity` suits the design. Returns the design, the size of chunks if
+/// it is stated, and `intensity`, which is unchanged.
 fn read_design(
     reader: Reader<'_>,
     intensity: Option<Intensity>,

@@ -10,8 +10,8 @@ use crate::study::distribution::Distribution;
 use crate::study::setting::{Domain, Setting};
 use crate::study::{Factor, Variation, rows};
 
-/// Cumulative probability of the lowest value at which a continuous distribution is tested before any run. The highest
-/// tested value has the cumulative probability 1 − `LOW`.
+/// Lowest cumulative probability whose quantile is tested before any run, for a continuous distribution. The highest
+/// such probability is 1 − `LOW`.
 pub(super) const LOW: f64 = 1e-6;
 
 /// Returns an error if a new factor has the same column as another factor, or sets the same field.
@@ -54,7 +54,7 @@ pub(super) struct Room {
 const MOST_VALUES: usize = 20_000;
 
 impl Room {
-    /// Creates the limits for a study with a number of motions. `most` is the maximum number of cases; `None` if the
+    /// Creates the limits for a study with `motions` motions. `most` is the maximum number of cases; `None` if the
     /// design does not combine all values.
     pub(super) fn new(motions: usize, most: Option<u64>) -> Self {
         Self { values: MOST_VALUES, cases: most.map(|most| (motions as u64, most)) }
