@@ -88,7 +88,7 @@ use setting::Setting;
 /// ```
 #[derive(Debug)]
 pub struct Study {
-    /// Title, in one line.
+    /// One-line title.
     pub title: String,
     /// Seed of all random draws.
     pub seed: u64,
@@ -167,14 +167,14 @@ impl Factor {
     }
 }
 
-/// Intensity to which motions are scaled.
+/// Intensity measure, and the levels to which motions are scaled.
 #[derive(Clone, Debug)]
 struct Intensity {
     measure: barrelstack_motion::IntensityMeasure,
     levels: Levels,
 }
 
-/// Levels of an intensity (SI).
+/// Levels of an intensity measure, in SI units.
 #[derive(Clone, Debug)]
 enum Levels {
     List(Vec<f64>),

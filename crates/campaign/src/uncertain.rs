@@ -1,4 +1,4 @@
-//! Ranges of results over the uncertain constants of the seats, from the runs of a study.
+//! Ranges in which the results of a study lie as the uncertain constants of the seats vary.
 //!
 //! Every run of a study of heights, a ranking or a score draws its own friction, stiffness and damping. The same
 //! regression as for the variants of a stack ([`Fitted`]) separates the effect of these constants from the sampling
@@ -151,8 +151,8 @@ impl Sample {
         Some(fitted.correlated(self.correlations.clone()))
     }
 
-    /// Returns the 95 % range of a share of collapses over the constants, and the effect of each constant on this
-    /// share.
+    /// Returns the 95 % range of a share of collapses as the uncertain constants vary, and the effect of each constant
+    /// on this share.
     pub(crate) fn effect(&self, share: &Conditional) -> Fitted {
         let constants: Vec<Constant<'_>> = self.constants.iter().map(Drawn::constant).collect();
         Fitted::of(share, &constants)

@@ -21,10 +21,10 @@ fn toml(value: &str) -> String {
     if bare { value.to_owned() } else { format!("\"{value}\"") }
 }
 
-/// Returns the `[[factor]]` tables that vary the friction, stiffness and damping of the seats of a scenario around
-/// their stated values, and the correlation of the friction factors.
+/// Returns TOML text with the `[[factor]]` tables that vary the friction, stiffness and damping of the seats of a
+/// scenario around their stated values. If the friction coefficients are correlated, a `[[correlation]]` table follows.
 ///
-/// The text is empty for a scenario without a stack, and for a scenario in which no constants are drawn.
+/// The string is empty for a scenario without a stack, and for a scenario in which no constants are drawn.
 pub(crate) fn factors(scenario: &Scenario) -> String {
     let mut text = String::new();
     let Scene::Stack { stack, unknowns: spread, .. } = &scenario.scene else { return text };

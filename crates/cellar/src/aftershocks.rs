@@ -90,13 +90,13 @@ type OfVariant = Vec<Case>;
 
 /// Runs the main shock of every variant of a cellar, and then each of several alternative aftershocks.
 ///
-/// Each strength is a factor by which the motion of the aftershock is multiplied: `record` if it is given, otherwise
-/// the motion of the cellar. The observer receives the progress and may stop the work; the results obtained until then
-/// are returned.
+/// An aftershock has the motion in the file `record`, or the motion of the cellar if `record` is `None`. Each strength
+/// is a factor by which this motion is multiplied. The observer receives the progress and may stop the work; the
+/// results obtained until then are returned.
 ///
 /// # Errors
 /// If `strengths` is empty, the cellar already has a sequence of shocks, the scale of its motion cannot be multiplied
-/// by a factor, the plan has a problem, or a stack cannot be built or does not stand.
+/// by a factor, the plan has a problem, or a stack cannot be built or does not stand under its own weight.
 pub fn aftershocks(
     cellar: &Cellar,
     strengths: &[f64],
@@ -333,7 +333,7 @@ pub fn tables(summary: &AftershockSummary) -> [Table; 2] {
     [strengths, stacks]
 }
 
-/// Returns the same two tables in machine-readable form, with one number in each cell. The first has one row per
+/// Returns the machine-readable counterparts of [`tables`], with one number in each cell. The first has one row per
 /// aftershock strength; the second has one row per stack and strength.
 fn numbers(summary: &AftershockSummary) -> [Table; 2] {
     let number = |value: f64| Cell::Number(value, 6);
@@ -416,7 +416,7 @@ pub fn document(summary: &AftershockSummary) -> Document {
     }
 }
 
-/// Returns the output files by name; the report is in the given language.
+/// Returns the name and the contents of each output file; the report is in the given language.
 ///
 /// # Errors
 /// If the summary cannot be written as JSON.

@@ -36,7 +36,7 @@ pub struct Answer {
 /// until then are returned.
 ///
 /// # Errors
-/// If the plan has a problem, or a stack cannot be built or does not stand.
+/// If the plan has a problem, or a stack cannot be built or does not stand under its own weight.
 pub fn answer(
     cellar: &Cellar,
     choice: RunChoice,
@@ -93,8 +93,10 @@ pub fn answer_with(
     Ok(Answer { prepared, cases, case, shown, summary })
 }
 
-/// Runs one part of the variants of a cellar, and keeps their results in a folder. Returns three numbers of variants of
-/// this part: those with a result in the folder, those whose computation failed (their results are not kept), and all.
+/// Runs one part of the variants of a cellar, and keeps their results in a folder.
+///
+/// Returns three counts: variants of this part with a result in the folder, variants of this part whose computation
+/// failed (their results are not kept), and all variants of this part.
 ///
 /// # Errors
 /// As for [`answer_with`].
@@ -115,7 +117,7 @@ pub fn run_part(
     Ok([valid(true), valid(false), of])
 }
 
-/// Returns an observer that several threads may call.
+/// Wraps an observer so that several threads may call it.
 pub(crate) fn shared(
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> impl Fn(Advance) -> ControlFlow<()> + Sync + '_ {

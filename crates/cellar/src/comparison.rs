@@ -316,7 +316,7 @@ impl Loss {
     }
 }
 
-/// Returns the losses of a layout in the variants that the statistics count, by variant number.
+/// Returns the losses of a layout by variant number. Variants that are not counted in its statistics are left out.
 fn losses(layout: &Layout) -> BTreeMap<u32, Loss> {
     let of = |case: &&Case| (case.variant, Loss::of(case, &layout.summary));
     counted(&layout.cases).iter().map(of).collect()
@@ -369,8 +369,12 @@ impl Estimate {
 }
 
 impl Change {
-    /// Returns the mean change over pairs of values that lie between 0 and `most`; if `most` is `None`, no interval is
-    /// computed. The confidence level applies to the intervals of `tries` such changes jointly.
+    /// Returns the mean value of each layout over pairs of values (first layout, second layout), the mean of second
+    /// minus first, and the confidence interval of this mean difference.
+    ///
+    /// All values lie between 0 and `most`. There is no interval if `most` is `None`, or if there are fewer than two
+    /// pairs. The confidence level applies jointly to `tries` intervals, one for each layout that is compared with the
+    /// first.
     fn of(pairs: &[[f64; 2]], most: Option<f64>, tries: usize) -> Self {
         let mean = |of: &dyn Fn(&[f64; 2]) -> f64| {
             pairs.iter().map(of).sum::<f64>() / pairs.len().max(1) as f64
@@ -421,8 +425,9 @@ fn pair(first: &Layout, second: &Layout, others: usize) -> LayoutPair {
     }
 }
 
-/// Returns the numbers of the variants that are left out of the comparison of two layouts, because the statistics of at
-/// least one layout do not count them. The room as stated counts as a variant only in a layout without other variants.
+/// Returns the numbers of the variants that are left out of the comparison of two layouts, because they are not counted
+/// in the statistics of at least one layout. The room as stated is treated as a variant only in a layout without other
+/// variants.
 fn left_out(layouts: [&Layout; 2], losses: [&BTreeMap<u32, Loss>; 2]) -> Vec<u32> {
     let of = |layout: &Layout| -> BTreeSet<u32> {
         let varied = layout.cases.iter().any(|case| case.variant > 0);

@@ -1,6 +1,6 @@
 //! Contact kinds of bodies, and the contact laws between bodies of different stacks.
 //!
-//! Bodies of two different stacks have the contact laws of fallen bodies that touch within one stack.
+//! Between bodies of different stacks, the same contact laws apply as between fallen bodies of one stack.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::{Scene, SpatialScene, StackPair};
@@ -8,7 +8,7 @@ use barrelstack_dynamics::join::{ContactKind, Crossing, Rule};
 use barrelstack_dynamics::{Motion, Solid};
 use barrelstack_space::Stack;
 
-/// Role of a body toward bodies of other stacks.
+/// Role of a body in contacts with bodies of other stacks.
 #[derive(Clone, Debug, PartialEq)]
 enum Role {
     /// The ground of a stack, which touches no body of another stack.
@@ -30,7 +30,7 @@ pub(crate) struct ContactKinds<'a> {
 }
 
 impl<'a> ContactKinds<'a> {
-    /// Returns the contact kind of every body of a stack.
+    /// Returns the index of the contact kind of every body of a stack. Kinds that are new are added.
     pub(crate) fn of_stack(&mut self, stack: &Stack, scene: &'a Scene) -> Vec<usize> {
         let free = match scene {
             Scene::Spatial(scene) => {
@@ -68,7 +68,7 @@ impl<'a> ContactKinds<'a> {
             .collect()
     }
 
-    /// Returns the contact kind of obstacles.
+    /// Returns the index of the contact kind of obstacles. The kind is added if it is new.
     pub(crate) fn of_obstacle(&mut self) -> usize {
         self.add(Role::Obstacle, ContactKind { nodes: 0, surfaces: 1 })
     }

@@ -1,4 +1,4 @@
-//! Histories of forces.
+//! Force histories.
 
 /// Returns the sum of two force histories. Each history is zero outside its samples, and linear between them.
 pub(crate) fn summed(one: &[(f64, [f64; 3])], other: &[(f64, [f64; 3])]) -> Vec<(f64, [f64; 3])> {

@@ -26,7 +26,7 @@ pub(crate) type StackBody = (usize, BodyId);
 pub(crate) enum Owner {
     /// A body of a stack.
     Stack(StackBody),
-    /// An obstacle.
+    /// An obstacle, by its index in the room.
     Obstacle(usize),
 }
 
@@ -67,7 +67,7 @@ pub(crate) struct Contact {
     /// Force (N) in the frame of the island at the last step.
     pub(crate) last: Vec3,
     now: Vec3,
-    /// Impulse (N·s) so far, as the sum of magnitudes.
+    /// Impulse (N·s) so far: the time integral of the magnitude of the force.
     pub(crate) impulse: f64,
     pub(crate) peak: f64,
 }
@@ -80,7 +80,8 @@ pub(crate) struct Watch {
     /// First contact with a body of another stack: time, own body, other body.
     pub(crate) touched: Option<(f64, BodyId, StackBody)>,
     pub(crate) touched_obstacle: Option<(f64, usize)>,
-    /// Impulse (N·s) that other stacks exert on the stack until its first loss of seat.
+    /// Impulse (N·s) that other stacks exert on the stack until the first of its bodies loses its seat. It is the sum
+    /// of the impulses of the contacts, each computed like [`Contact::impulse`].
     pub(crate) impulse: f64,
 }
 
@@ -104,7 +105,7 @@ pub(crate) struct Live {
 }
 
 impl Live {
-    /// Creates the changing state of an island.
+    /// Creates the mutable state of an island, without contact records.
     pub(crate) fn of(running: Running, watches: Vec<Watch>) -> Self {
         let travels = vec![0.0; running.state.poses.len()];
         Self {
@@ -121,7 +122,7 @@ impl Live {
     }
 }
 
-/// A party of a contact: a stack or an obstacle.
+/// Stack or obstacle that takes part in a contact, by its index in the room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum PartyId {
     Stack(usize),
@@ -137,12 +138,14 @@ impl Owner {
     }
 }
 
-/// Logs, to which entries are only appended.
+/// Logs of an island. Entries are only appended, so that an earlier state of a log is restored by cutting it to its
+/// earlier length.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Logs {
     /// Recorded frames of every member.
     pub(crate) frames: Vec<RoomFrames>,
-    /// Forces (N) on every obstacle of the island, along the axes of the room.
+    /// For every obstacle of the island, the history of the force on it: time (s), and force (N) along the axes of the
+    /// room.
     pub(crate) forces: Vec<Vec<(f64, [f64; 3])>>,
 }
 
@@ -211,7 +214,7 @@ impl Island {
         self.live.ending.is_none()
     }
 
-    /// Returns the poses and twists of a member in its own frame.
+    /// Returns the poses and twists of the bodies of a member, in the frame of its stack.
     pub(crate) fn own(&self, member: usize) -> (Vec<Pose<Spatial>>, Vec<Twist<Spatial>>) {
         let Member { bodies, frame, .. } = &self.fixed.members[member];
         let (state, back) = (&self.live.running.state, frame.back());
@@ -258,7 +261,7 @@ impl Island {
         all
     }
 
-    /// Returns the number of bodies of a member that move.
+    /// Returns the number of moving bodies of a member.
     pub(crate) fn moving(&self, member: usize) -> usize {
         let (poses, twists) = self.own(member);
         self.live.watches[member].rest.moving((&poses, &twists)).count()
@@ -369,7 +372,8 @@ impl Island {
         self.observe(self.time() - before);
     }
 
-    /// Observes an accepted state after a step (s).
+    /// Processes an accepted state, a time `step` (s) after the previous one: updates the outcomes, the contacts and
+    /// the logs, and checks whether the run of the island ends.
     fn observe(&mut self, step: f64) {
         let rests = self.watch();
         self.meet(step);
@@ -404,7 +408,7 @@ impl Island {
         rests
     }
 
-    /// Records contacts between parties.
+    /// Updates the contact records, the observers and the forces on obstacles after a time step of length `step` (s).
     fn meet(&mut self, step: f64) {
         let Live { running, watches, contacts, .. } = &mut self.live;
         let forces = &running.scratch.pair_forces;
@@ -535,7 +539,7 @@ impl Logs {
     }
 }
 
-/// Returns the sums of two energy balances.
+/// Adds two energy balances term by term.
 pub(crate) fn plus(one: EnergySummary, other: &EnergySummary) -> EnergySummary {
     EnergySummary {
         kinetic: one.kinetic + other.kinetic,
@@ -552,7 +556,8 @@ pub(crate) fn plus(one: EnergySummary, other: &EnergySummary) -> EnergySummary {
     }
 }
 
-/// Returns the numbers of a pose: position (m), and quaternion.
+/// Returns the components of a pose: the position x, y, z (m), followed by the quaternion w, x, y, z of the
+/// orientation.
 pub(crate) fn numbers(pose: Pose<Spatial>) -> [f64; 7] {
     let (p, q) = (pose.position, pose.orientation);
     [p.x, p.y, p.z, q.w, q.v.x, q.v.y, q.v.z]

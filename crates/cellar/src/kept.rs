@@ -46,7 +46,7 @@ impl Part {
 }
 
 impl Kept {
-    /// Creates the folder if it is missing.
+    /// Opens a folder for the results of a cellar, and creates the folder if it is missing.
     ///
     /// # Errors
     /// If the folder cannot be created.
@@ -98,7 +98,7 @@ impl Kept {
         Ok(Some(file.case))
     }
 
-    /// Writes the result of a variant whose computation did not fail.
+    /// Writes the result of a variant; does nothing if the computation of the variant failed.
     ///
     /// # Errors
     /// If the file cannot be written.

@@ -294,9 +294,10 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
     })
 }
 
-/// Returns the first name in a folder, for an error message. Hidden names and those in `but` are ignored.
+/// Returns the name of the first entry of a folder in sorted order, for an error message. Hidden entries and those
+/// named in `but` are ignored.
 ///
-/// Returns `None` if there is no such name or no such folder.
+/// Returns `None` if there is no such entry or no such folder.
 fn first_in(folder: &Path, but: &[&str]) -> Option<String> {
     let names = fs::read_dir(folder).ok()?.flatten();
     let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
@@ -433,12 +434,12 @@ impl Study {
         Some("stacks".to_owned() + &said.collect::<String>())
     }
 
-    /// Returns the fingerprint of the study file, as text.
+    /// Returns the fingerprint of the study file as 16 hexadecimal digits.
     fn text_hash(&self) -> String {
         format!("{:016x}", fnv1a(self.text.as_bytes()))
     }
 
-    /// Returns the fingerprint of the study, as text.
+    /// Returns the fingerprint of the study as 16 hexadecimal digits.
     fn fingerprint(&self) -> String {
         format!("{:016x}", self.hash())
     }

@@ -1,5 +1,5 @@
-//! Changes of a study after which its finished chunks remain valid: keys of chunks, and comparison with the
-//! study in a folder.
+//! Checks whether finished chunks remain valid after a study has changed: computes the keys of chunks, and compares a
+//! study with the study in a folder.
 
 use barrelstack_report::described;
 

@@ -10,10 +10,10 @@ use super::error::StudyError;
 use super::folder::{LAYOUT, MANIFEST, Provenance, read_file};
 use crate::scenario::fnv1a;
 
-/// Text of the manifest before the fingerprint.
+/// Text that immediately precedes the fingerprint in the manifest.
 const BEFORE: &str = ",\n  \"fingerprint\": \"";
 
-/// Text of the manifest after the fingerprint.
+/// Text that follows the fingerprint, up to the end of the manifest.
 const BEHIND: &str = "\"\n}\n";
 
 /// Number of digits of a fingerprint.
@@ -23,7 +23,8 @@ const DIGITS: usize = 16;
 pub(super) enum Manifest {
     /// The manifest has not changed since it was written.
     Sound(Box<Provenance>),
-    /// The manifest has changed since it was written; the reason is a clause.
+    /// The manifest has changed since it was written. The string is a clause that describes the damage, such as "it
+    /// does not end with its fingerprint".
     Damaged(String),
 }
 

@@ -84,8 +84,8 @@ impl Synthetic {
 }
 
 impl Shaking {
-    /// Returns the motion for a stack with the length scale `similitude`; the motion is scaled as its source
-    /// states.
+    /// Returns the motion for a stack with the length scale `similitude`. Its amplitude is scaled as the source
+    /// specifies.
     pub(super) fn ground(&self, base: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
         match self {
             Self::Base => ground::of_spec(base, similitude),
@@ -101,8 +101,8 @@ impl Shaking {
         }
     }
 
-    /// Returns all components of the motion for a stack with the length scale `similitude`; the components
-    /// are scaled as their source states.
+    /// Returns all components of the motion for a stack with the length scale `similitude`. Their amplitude is scaled
+    /// as the source specifies.
     fn in_space(
         &self,
         base: &MotionSpec,
@@ -299,8 +299,8 @@ impl MotionCache {
         })
     }
 
-    /// Returns all components of an unscaled motion, without rotation, from the cache, or reads them from the
-    /// source.
+    /// Returns all components of an unscaled motion from the cache, or reads them from the source. They are not yet
+    /// rotated by the azimuth of the stack.
     pub(super) fn in_space(
         &self,
         motion: &Motion,
@@ -346,7 +346,7 @@ fn measure(motion: &GroundMotion) -> Result<[f64; 9], MotionError> {
     Ok(values)
 }
 
-/// Multiplies intensity measures by the effect of scaling the motion with `factor`.
+/// Converts the intensity measures of a motion to those of the motion multiplied by `factor`.
 ///
 /// The Arias intensity is proportional to the square of the factor. PGV/PGA and the duration do not change.
 /// All other measures are proportional to the factor.

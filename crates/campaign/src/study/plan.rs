@@ -44,8 +44,8 @@ const DOUBLINGS: u64 = 40;
 const FIRST: u64 = 64;
 
 impl Sizes {
-    /// Returns the number of the first case and the number of cases of a chunk, if chunks follow the order of
-    /// the cases.
+    /// Returns the index of the first case of a chunk (if chunks follow the order of the cases), and the size of the
+    /// chunk. The last chunk of a study may have fewer cases.
     fn span(self, chunk: u64) -> (u64, u64) {
         match self {
             Self::Given(size) => (chunk * u64::from(size), u64::from(size)),

@@ -25,7 +25,7 @@ const BATCH: usize = 128;
 pub(super) struct Resources<'a> {
     /// Cache of motions.
     pub(super) cache: &'a MotionCache,
-    /// Vector width for the cases.
+    /// SIMD vector width with which the cases are run.
     pub(super) lanes: Width,
     /// Callback that receives the result of each case.
     pub(super) report: &'a mut dyn FnMut(&CaseResult),

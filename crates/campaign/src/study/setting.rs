@@ -99,7 +99,7 @@ impl Domain {
         Self { kind: Kind::Quantity(dimensions, Range::POSITIVE), dimension: dimensions[0] }
     }
 
-    /// Restricts the domain to the dimension of a first value.
+    /// Restricts the domain to the dimension of `node`, the first of the values that are given.
     ///
     /// A field may allow several dimensions, such as acceleration or velocity, but a column holds only one.
     #[must_use]

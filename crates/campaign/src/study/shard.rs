@@ -71,8 +71,8 @@ impl<W: std::io::Write + Send> Writer<W> {
         group.close().map(drop)
     }
 
-    /// Writes the remaining rows and the metadata `about`, which are pairs of key and text, and closes the
-    /// file.
+    /// Writes the remaining rows and the key-value metadata `about`, and closes the file. The prefix `barrelstack.` is
+    /// added to every key.
     pub(super) fn finish(mut self, about: &[(&str, String)]) -> Result<(), ParquetError> {
         let rest = self.rows.split_off(0);
         self.group(&rest)?;
@@ -84,7 +84,7 @@ impl<W: std::io::Write + Send> Writer<W> {
     }
 }
 
-/// Returns a table as the bytes of a Parquet file. The metadata `about` are pairs of key and text.
+/// Returns a table as the bytes of a Parquet file with the key-value metadata `about`.
 ///
 /// The same table and metadata give the same bytes.
 pub(super) fn to_bytes(
@@ -221,7 +221,8 @@ fn write_column<W: std::io::Write + Send>(
     writer.close()
 }
 
-/// Reads a table from the bytes of a Parquet file that [`to_bytes`] wrote, and the metadata text for a key.
+/// Reads a table from the bytes of a Parquet file that [`to_bytes`] wrote. Also returns the metadata value for `key`;
+/// `None` if there is none.
 pub(super) fn from_bytes(
     bytes: Vec<u8>,
     key: &str,
@@ -296,7 +297,8 @@ fn read_column(
     }
 }
 
-/// Appends values to a column, with `None` for rows without a value; the inverse of [`present`].
+/// Appends one row per definition level to a column: the next value at level 1, and `None` at level 0. This is the
+/// inverse of [`present`].
 fn spread<T>(levels: &[i16], stored: Vec<T>, into: &mut Vec<Option<T>>) {
     let mut stored = stored.into_iter();
     into.extend(levels.iter().map(|level| if *level == 1 { stored.next() } else { None }));

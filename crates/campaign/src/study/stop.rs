@@ -8,7 +8,7 @@ use super::table::StudyTable;
 /// Numbers of cases by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Number of all cases.
+    /// Total number of cases.
     pub cases: u64,
     /// Number of cases with a verdict: stable or collapse.
     pub judged: u64,
@@ -24,7 +24,7 @@ impl Tally {
         self.collapsed += u64::from(outcome == "collapse");
     }
 
-    /// Returns the numbers of cases in a table.
+    /// Counts the cases in a table by outcome.
     pub fn of(table: &StudyTable) -> Self {
         let mut tally = Self::default();
         for outcome in table.texts("outcome").unwrap_or_default() {

@@ -141,7 +141,7 @@ impl StudyTable {
         if let Values::Integer(values) = &self.column(name)?.values { Some(values) } else { None }
     }
 
-    /// Returns the texts of a column; `None` if there is no such column of text.
+    /// Returns the strings of a column; `None` if there is no such column of strings.
     pub fn texts(&self, name: &str) -> Option<&[Option<String>]> {
         if let Values::Text(values) = &self.column(name)?.values { Some(values) } else { None }
     }

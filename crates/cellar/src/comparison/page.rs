@@ -265,7 +265,7 @@ fn provenance(layouts: &[Layout], found: &CellarComparison) -> Vec<(String, Stri
     pairs
 }
 
-/// Returns the files of a comparison by name, except its page.
+/// Returns the name and the contents of each output file of a comparison, except its page.
 ///
 /// # Errors
 /// If the document cannot be written as JSON.

@@ -1,5 +1,5 @@
-//! Usual changes to a room that may reduce the losses, or keep a collapse from spreading to other stacks. Changes that
-//! are not possible are listed with the reason.
+//! The usual changes: a fixed list of changes to a room that may reduce the losses, or keep a collapse from spreading
+//! to other stacks. Changes that are not possible are listed with the reason.
 
 use barrelstack::RunFailure;
 use barrelstack::device::WalkingStops;
@@ -10,14 +10,14 @@ use barrelstack_report::shortest;
 use crate::plan::{Plan, meters};
 use crate::scenario::{Block, Cellar};
 
-/// Free distance (m) between the stacks of a row in the layout with wider spacing. If it does not fit, a search finds
-/// the widest distance that fits.
+/// Clearance (m) between the stacks of a row in the layout with wider spacing. If it does not fit, a search finds the
+/// largest clearance that fits.
 const WIDE: f64 = 1.0;
 
-/// Resolution of the search for the widest spacing that fits: number of distances per meter.
+/// Resolution of the search for the largest clearance that fits: number of steps per meter.
 const PER_METER: f64 = 100.0;
 
-/// A usual change to a room.
+/// One of the usual changes to a room, with the cellar that results from it.
 #[derive(Clone, Debug)]
 pub struct Usual {
     /// Name, such as "one level less".
@@ -26,8 +26,8 @@ pub struct Usual {
     pub changed: Result<Cellar, String>,
 }
 
-/// Returns the usual changes to a room: wider spacing, all levels strapped together, stops under every rack, one level
-/// less, and every stack turned by 90°.
+/// Applies each of the usual changes to a cellar: wider spacing, all levels strapped together, stops under every rack,
+/// one level less, and every stack turned by 90°.
 pub fn usual(cellar: &Cellar) -> Vec<Usual> {
     let (spacing, wider) = spaced(cellar);
     let pretension = PRETENSIONS[PRETENSIONS.len() - 1];

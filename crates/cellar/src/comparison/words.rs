@@ -1,4 +1,4 @@
-//! A comparison of layouts as sentences, the effect first.
+//! Describes a comparison of layouts in sentences, starting with the effect.
 
 use barrelstack::variants::words::percent;
 use barrelstack_report::{capital, measured, shortest};
@@ -35,7 +35,7 @@ pub fn headline(found: &CellarComparison) -> String {
     format!("{motions}{effect}")
 }
 
-/// Returns the sentence on the layout that loses the smallest share of its barrels.
+/// Returns a sentence that states which layout loses the smallest share of its barrels.
 fn best(found: &CellarComparison, first: &LayoutAnswer) -> String {
     let judged: Vec<_> = found.ranked().into_iter().filter(|(one, _)| one.counted > 0).collect();
     let many = judged.len();
@@ -226,7 +226,6 @@ pub fn sentences(found: &CellarComparison) -> Vec<String> {
     all
 }
 
-/// Returns the sentence on a layout.
 fn describe(one: &LayoutAnswer) -> String {
     let LayoutAnswer { name, capacity, stacks, share_lost, .. } = one;
     if one.counted == 0 {
@@ -260,7 +259,7 @@ fn describe(one: &LayoutAnswer) -> String {
     )
 }
 
-/// Returns the sentence on the variants that are left out of the pairs; `None` if there are none.
+/// Returns a sentence that states how many variants are left out of the pairs; `None` if there are none.
 fn without(pair: &LayoutPair) -> Option<String> {
     let count = u32::try_from(pair.left_out.len()).unwrap_or(u32::MAX);
     let (has, are) = if count == 1 { ("has", "it is") } else { ("have", "they are") };
