@@ -85,7 +85,7 @@ impl Convex {
         if inside <= 0.0 { inside } else { nearest }
     }
 
-    /// Returns the free distance (m) to another polygon. It is negative if the polygons overlap; its magnitude is then
+    /// Returns the clear distance (m) to another polygon. It is negative if the polygons overlap; its magnitude is then
     /// the length of the shortest shift that separates them.
     pub fn apart(&self, other: &Self) -> f64 {
         let mut separation = f64::NEG_INFINITY;
@@ -146,7 +146,7 @@ impl Grid {
         Self { lower, cell, columns, rows, taken: vec![false; columns * rows] }
     }
 
-    /// Returns the middle of a cell by its index.
+    /// Returns the center of a cell by its index.
     pub fn middle(&self, at: usize) -> Point {
         let [column, row] = [at % self.columns, at / self.columns];
         [
@@ -155,7 +155,7 @@ impl Grid {
         ]
     }
 
-    /// Marks as taken all cells whose middle is less than `distance` (m) away from a polygon.
+    /// Marks as taken all cells whose center is less than `distance` (m) away from a polygon.
     pub fn take(&mut self, polygon: &Convex, distance: f64) {
         let [lower, upper] = polygon.bounds();
         if polygon.corners().len() < 3 {
@@ -179,7 +179,7 @@ impl Grid {
         }
     }
 
-    /// Marks as taken all cells whose middle satisfies a condition.
+    /// Marks as taken all cells whose center satisfies a condition.
     pub fn take_where(&mut self, is_taken: impl Fn(Point) -> bool) {
         for at in 0..self.taken.len() {
             self.taken[at] |= is_taken(self.middle(at));
