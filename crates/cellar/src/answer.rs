@@ -20,7 +20,7 @@ use crate::words;
 pub struct Answer {
     /// The cellar with its plan.
     pub prepared: Prepared,
-    /// Results of the room as stated and of its variants, in order; interrupted runs are left out.
+    /// Results of all variants in order, from variant 0, the room as stated in its file; interrupted runs are left out.
     pub cases: Vec<Case>,
     /// Result of the run that is shown.
     pub case: Case,

@@ -46,7 +46,7 @@ pub use run::{Advance, run};
 pub use sample::{CellarFailure, Prepared};
 pub use scenario::Cellar;
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

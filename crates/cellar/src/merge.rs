@@ -25,7 +25,7 @@ struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// Returns the parties of the merged model: the stacks, followed by the obstacles.
+    /// Returns the models to be joined: those of the stacks, followed by those of the obstacles.
     fn parties(&self) -> Vec<Party<'_>> {
         let Self { world, frame, .. } = self;
         let stacks = self.stacks.iter().map(|stack| {
@@ -71,7 +71,8 @@ impl Plan<'_> {
         (carries, members, owners)
     }
 
-    /// Moves the records of the islands into the merged island, and returns its logs.
+    /// Moves the watches and the contact records of the islands into `live`, the state of the merged island. Returns
+    /// the logs of the merged island: frames of its stacks, and forces on its obstacles.
     fn hand_over(&self, islands: Vec<Island>, live: &mut Live) -> Logs {
         let time = live.running.state.time;
         let mut watches = vec![None; self.members.len()];

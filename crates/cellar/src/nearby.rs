@@ -12,11 +12,11 @@ use barrelstack_dynamics::{BodyId, Motion, Pose, Spatial, Vec3};
 use crate::island::{Island, Owner, StackBody};
 use crate::world::World;
 
-/// Gap (m) below which two bodies are put on the list of couples; for this purpose, the gap is estimated from the
+/// Gap (m) below which two bodies are put on the list of pairs; for this purpose, the gap is estimated from the
 /// bounding spheres of the bodies.
 const MARGIN: f64 = 0.4;
 
-/// Displacement (m) of a body after which the list of couples is rebuilt.
+/// Displacement (m) of a body after which the list of pairs is rebuilt.
 const STALE: f64 = 0.1;
 
 /// Distance (m) that a body may move in a window if no other body is near; it corresponds to a speed of 45 m/s.
@@ -26,13 +26,13 @@ pub(crate) const FREE: f64 = 0.09;
 /// The merge thus comes before an impact, and does not affect the next step.
 const SLACK: f64 = 2e-3;
 
-/// Least distance (m) that a body may move in a window, even a body at rest.
+/// Allowance (m) that is added to the predicted travel of a body in a window, so that even a body at rest may move.
 const LEAST: f64 = 1e-3;
 
 /// Gap (m) up to which gaps are measured exactly; for larger gaps, a lower bound suffices.
 const EXACT: f64 = 0.1;
 
-/// Two bodies of different stacks, or a body and an obstacle.
+/// A pair of bodies that are near each other: two bodies of different stacks, or a body and an obstacle.
 struct Couple {
     bodies: [Owner; 2],
     /// Gap (m) at the last measurement, or a lower bound of it.
@@ -46,11 +46,11 @@ struct Couple {
 /// Bodies that are near each other.
 pub(crate) struct Nearby {
     couples: Vec<Couple>,
-    /// For every body, its couples.
+    /// For every body, the indices of its pairs in `couples`.
     of_body: Vec<Vec<u32>>,
     /// Length (m) of the path of every body, summed over all windows so far.
     paths: Vec<f64>,
-    /// Positions (m) of the bodies in the room when the list of couples was made.
+    /// Positions (m) of the bodies in the room when the list of pairs was made.
     made_for: Vec<Vec3>,
 }
 
@@ -68,7 +68,7 @@ impl Nearby {
         }
     }
 
-    /// Rebuilds the list of couples if a body has moved more than [`STALE`].
+    /// Rebuilds the list of pairs if a body has moved more than [`STALE`].
     pub(crate) fn refresh(&mut self, world: &World<'_>, islands: &[Option<Island>]) {
         let moved = |(place, made): (&Vec3, &Vec3)| {
             let moved_by = *place - *made;
@@ -184,8 +184,8 @@ impl Nearby {
         self.made_for = places;
     }
 
-    /// Returns all couples (two bodies of different islands, or a body and an obstacle) that may touch within a time
-    /// `ahead` (s). For all other couples, sets how far their bodies may move.
+    /// Returns all pairs (two bodies of different islands, or a body and an obstacle) that may touch within a time
+    /// `ahead` (s). For all other pairs, sets how far their bodies may move.
     pub(crate) fn meetings(
         &mut self,
         world: &World<'_>,
@@ -272,7 +272,7 @@ impl Nearby {
         (of.fixed.owners.iter().map(tube).collect(), near)
     }
 
-    /// Returns `true` if the two bodies of a couple are not in the same island. One of them belongs to `island`.
+    /// Returns `true` if the two bodies of a pair, one of which belongs to `island`, are not in the same island.
     fn parted(couple: &Couple, places: &Places, island: &Island) -> bool {
         match couple.bodies {
             [Owner::Stack((one, _)), Owner::Stack((other, _))] => places[one].0 != places[other].0,

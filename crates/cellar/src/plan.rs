@@ -19,7 +19,7 @@ const ENTRY: f64 = PASSAGE;
 /// Depth (m) of the rectangles that stand for doors in a drawing.
 const LEAF: f64 = 0.12;
 
-/// Shape of all stacks that have the same number of levels.
+/// Geometry and contents of a stack, shared by all stacks that have the same number of levels.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Footprint relative to the origin of the stack.
@@ -60,7 +60,7 @@ impl Model {
 /// The plan of a cellar.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Shapes of the stacks, in the order of [`Cellar::models`].
+    /// Model for each number of levels, in the order of [`Cellar::models`].
     pub models: Vec<Model>,
     /// The stacks in their places, row by row.
     pub stacks: Vec<Standing>,
@@ -316,12 +316,12 @@ impl PlanSummary {
     }
 }
 
-/// Returns a length with its unit, rounded to centimeters.
+/// Formats a length (m) with its unit, rounded to centimeters; a negative length is formatted as zero.
 pub(crate) fn meters(length: f64) -> String {
     format!("{:.2} m", length.max(0.0))
 }
 
-/// Returns a volume (m³) in liters.
+/// Formats a volume (m³) in liters.
 pub(crate) fn liters(volume: f64) -> String {
     format!("{:.0} L", 1e3 * volume)
 }
@@ -554,7 +554,7 @@ impl Obstacles<'_> {
         let at_door = |[x, y]: Point| {
             cellar.doors.iter().any(|door| {
                 let [a, b] = opening(&cellar.room, door, half + CELL);
-                // The middle of a person in front of the opening is at least half the width of a person from its
+                // The center of a person in front of the opening is at least half the width of a person from its
                 // edges.
                 let narrow = |low: f64, high: f64, value: f64, along: bool| {
                     let inset = if along { half - 0.5 * CELL } else { 0.0 };
@@ -579,7 +579,7 @@ impl Obstacles<'_> {
             .collect()
     }
 
-    /// Marks as taken all floor that is closer to a body or a column than half the width of a person, since the middle
+    /// Marks as taken all floor that is closer to a body or a column than half the width of a person, since the center
     /// of a person cannot be there.
     fn take_from(&self, grid: &mut Grid) {
         let half = 0.5 * PASSAGE;

@@ -1,4 +1,4 @@
-//! The page, the tables and the files of a cellar.
+//! The results of a cellar as a report page, as tables and as output files.
 
 use std::sync::Arc;
 
@@ -196,7 +196,6 @@ pub fn document(answer: &Answer) -> Document {
     }
 }
 
-/// Returns a finding as a sentence.
 fn sentence(finding: &str) -> String {
     format!("{}.", barrelstack_report::capital(finding))
 }
@@ -216,7 +215,7 @@ fn times(range: Option<&Range>, of: u32) -> Cell {
     Cell::maybe(range.map(|range| span(range, of, 1, "s")))
 }
 
-/// Returns a share of variants with its interval.
+/// Formats a share of variants with its 95 % interval; a dash if there are no variants.
 pub(crate) fn count(count: &Count) -> Cell {
     Cell::text(match count.share {
         Some(share) => {

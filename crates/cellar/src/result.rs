@@ -64,7 +64,7 @@ pub struct StackEnd {
     pub touched: Option<Touch>,
     /// Time (s) of the first contact with an obstacle, and index of the obstacle in [`RoomRun::obstacles`].
     pub touched_obstacle: Option<(f64, usize)>,
-    /// `true` if a body of another stack touched the stack before it lost its first seat.
+    /// `true` if the stack lost a seat after a body of another stack had touched it.
     pub knocked_over: bool,
     /// Indices of the bodies of the stack in [`RoomRun::bodies`].
     pub bodies: std::ops::Range<usize>,

@@ -13,7 +13,7 @@ pub struct Placed {
     /// Three-dimensional scenario of the stack, in which all random draws have been applied. Its motion and the azimuth
     /// of its stack are ignored.
     pub scenario: Scenario,
-    /// Position (m) of the middle of the footprint in the room.
+    /// Position (m) of the center of the footprint in the room.
     pub at: [f64; 2],
     /// Angle (rad), counterclockwise from the `x` axis of the room to the `x` axis of the stack.
     pub azimuth: f64,
@@ -39,7 +39,7 @@ pub struct Shift {
     /// Displacement (m) along the axes of the stack.
     pub by: [f64; 3],
     /// Angle (rad) of a turn about the vertical, counterclockwise from above: a body turns about its center of mass, a
-    /// whole stack about the middle of its footprint.
+    /// whole stack about the center of its footprint.
     pub turn: f64,
 }
 
@@ -56,9 +56,9 @@ impl Placed {
 pub struct Obstacle {
     /// Name of the obstacle; unique in its room.
     pub name: String,
-    /// Middle (m) of the block.
+    /// Center (m) of the block.
     pub center: [f64; 3],
-    /// Half the sides (m) of the block.
+    /// Half-extents (m) of the block along its own axes.
     pub half: [f64; 3],
     /// Angle (rad) by which the block is turned counterclockwise about the vertical.
     pub azimuth: f64,
@@ -94,7 +94,7 @@ impl Room {
     }
 }
 
-/// Settings of a run, none of which affects its motion.
+/// Settings of a run, none of which affects the computed motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Number of threads; zero for all cores.
@@ -129,7 +129,7 @@ pub enum RoomFailure {
     Differ {
         /// Name of the first stack.
         first: String,
-        /// Name of a stack that differs from it.
+        /// Name of a stack whose gravity or integration method differs from that of the first stack.
         second: String,
     },
     /// Two stacks or obstacles have the same name.
@@ -195,12 +195,12 @@ pub enum RoomFailure {
         /// Depth (m) of the overlap.
         depth: f64,
     },
-    /// A side of an obstacle is not positive.
+    /// A side length of an obstacle is not positive, or not finite.
     #[error("obstacle \"{name}\" has a side of {side} m: give it three positive sides")]
     Side {
         /// Name of the obstacle.
         name: String,
-        /// The side (m).
+        /// Length (m) of the shortest side of the obstacle.
         side: f64,
     },
     /// The bodies of the stacks cannot be combined into one model.

@@ -23,8 +23,8 @@ use crate::world::{PRESSED, World};
 /// Length (s) of a window: longer windows merge islands at larger gaps, shorter ones cost more.
 const WINDOW: f64 = 2e-3;
 
-/// Least time (s) for which the run of an island at rest is continued, if one of its barrels still rolls toward another
-/// stack or an obstacle.
+/// Shortest time (s) for which an island at rest is advanced further if one of its barrels still rolls toward another
+/// stack or an obstacle. An island counts as at rest even while barrels roll away from their stacks.
 const ROLLS: f64 = 0.25;
 
 /// Wall-clock time between two calls of the observer.
@@ -281,8 +281,8 @@ impl<'a> Running<'a> {
         Ok(all)
     }
 
-    /// Lets islands at rest continue from a time (s) if one of their barrels still rolls toward another stack or an
-    /// obstacle.
+    /// Resumes every island at rest that has a barrel rolling toward another stack or an obstacle. `now` is the
+    /// present time (s).
     fn keep_rolling(&mut self, now: f64) {
         let world = self.world;
         let mut goes_on = Vec::new();
@@ -321,7 +321,7 @@ impl<'a> Running<'a> {
             let along = apart.dot(velocity);
             let aside = apart.cross(velocity).length();
             let speed = velocity.length();
-            // Part of the other body, such as a long wall, can be ahead even if its middle is not.
+            // Part of the other body, such as a long wall, can be ahead even if its center is not.
             along > -radius * speed && aside < (reach + radius) * speed
         };
         let stacks = (0..world.stacks.len()).filter(|stack| *stack != own);
@@ -342,7 +342,7 @@ impl<'a> Running<'a> {
     }
 }
 
-/// Returns the first island of the group of an island.
+/// Returns the first island of the group to which the island `at` belongs.
 fn root(group: &[usize], mut at: usize) -> usize {
     while group[at] != at {
         at = group[at];

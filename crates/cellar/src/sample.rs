@@ -123,12 +123,12 @@ impl Prepared {
         Ok(Self { cellar, plan, ground, onset, later, starts, obstacles })
     }
 
-    /// Returns the number of variants, without the room as stated.
+    /// Returns the number of variants. Variant 0, the room as stated in its file, is not counted.
     pub fn count(&self) -> u32 {
         self.cellar.stated().imperfections().map_or(0, |imperfections| imperfections.variants)
     }
 
-    /// Returns the room of a variant; number 0 is the room as stated.
+    /// Returns the room of a variant. Variant 0 is the room as stated in its file, without random draws.
     ///
     /// # Errors
     /// If the motion cannot be read.
@@ -244,7 +244,7 @@ impl Prepared {
         Ok(joined(first, shocks))
     }
 
-    /// Checks that the stacks as stated do not overlap in the places from which they start.
+    /// Checks that the stacks of variant 0, the room without random draws, do not overlap in their initial poses.
     ///
     /// # Errors
     /// If they overlap, or a stack cannot be built or does not stand.
@@ -327,7 +327,8 @@ impl Prepared {
         Case { shocks: shocks.collect(), ..self.shock(variant, run, self.onset) }
     }
 
-    /// Returns the result of a run of a shock whose shaking starts at a time (s).
+    /// Returns the result of a run of a variant, either of one shock or of all shocks joined. `onset` is the time (s)
+    /// in the run at which the shaking starts.
     fn shock(&self, variant: u32, run: &RoomRun, onset: f64) -> Case {
         let outlines = self.outlines(run, |body| &body.to);
         let stacks: Vec<StackCase> = run.stacks.iter().map(|end| stack_case(run, end)).collect();
@@ -381,7 +382,8 @@ impl Prepared {
         run.stacks.iter().enumerate().flat_map(|stack| of(stack).collect::<Vec<_>>()).collect()
     }
 
-    /// Returns what happens in an aisle.
+    /// Returns the result of a run in the aisle between two corners, `from` and `to` (m). `end` contains the bodies in
+    /// their final poses. `onset` is the time (s) in the run at which the shaking starts.
     fn aisle(
         &self,
         from: [f64; 2],
@@ -426,7 +428,7 @@ impl Prepared {
         end: &Obstacles<'_>,
         onset: f64,
     ) -> Option<f64> {
-        // No body reaches farther than this distance (m) from its middle.
+        // No body reaches farther than this distance (m) from its center.
         const REACH: f64 = 2.0;
         let placed = run.bodies.iter().any(|body| body.start != body.from);
         let bodies = if placed { self.outlines(run, |body| &body.start) } else { Vec::new() };
@@ -588,7 +590,7 @@ fn set_friction(law: &mut Interface, wanted: f64) {
 /// Result of one variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
-    /// Number of the variant; 0 is the room as stated.
+    /// Number of the variant; 0 is the room as stated in its file, without random draws.
     pub variant: u32,
     /// `false` if the computation of a stack failed.
     pub valid: bool,
@@ -650,9 +652,9 @@ impl StackCase {
 /// An aisle in one variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AisleCase {
-    /// Time (s) from the start of the shaking until the middle of a barrel is first above the aisle.
+    /// Time (s) from the start of the shaking until the center of a barrel is first above the aisle.
     pub first: Option<f64>,
-    /// Largest speed (m/s) of a barrel while its middle is above the aisle.
+    /// Largest speed (m/s) of a barrel while its center is above the aisle.
     pub fastest: Option<f64>,
     /// Share of the aisle's area that is covered at the end of the run.
     pub covered: f64,

@@ -131,7 +131,7 @@ impl Column {
     }
 }
 
-/// Rows of equal stacks.
+/// Rows of stacks that are alike; only their numbers of levels may differ from row to row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// Name by which changes refer to the block.
@@ -143,17 +143,17 @@ pub struct Block {
     /// Position (m), along x and y, of the near left corner of the first stack (of the bounding rectangle of its
     /// footprint).
     pub first: [f64; 2],
-    /// Free distance (m) between the stacks of a row.
+    /// Clear distance (m) between neighboring stacks of a row.
     pub spacing: f64,
-    /// Free distance (m) between rows that stand back to back.
+    /// Clear distance (m) between rows that stand back to back.
     pub between_rows: f64,
-    /// Free distance (m) between two groups of rows.
+    /// Clear distance (m) between two groups of rows.
     pub aisle: f64,
     /// Number of rows that stand back to back before an aisle follows.
     pub rows_together: u32,
     /// Angle (rad) by which every stack is turned, counterclockwise from above.
     pub azimuth: f64,
-    /// Number of levels; `None` for the number of levels that the stack states.
+    /// Number of levels; `None` to use `stack.levels`.
     pub levels: Option<u32>,
     /// Numbers of levels row by row, in place of `levels`; empty if not given.
     pub levels_by_row: Vec<u32>,
@@ -252,12 +252,12 @@ pub fn names_built_in() -> impl Iterator<Item = &'static str> {
     BUILT_IN.iter().map(|(name, _)| *name)
 }
 
-/// Returns the text of a built-in cellar.
+/// Returns the TOML source of a built-in cellar.
 pub fn built_in(name: &str) -> Option<&'static str> {
     BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// Language of cellar files: its fields, and the built-in files that a cellar may extend (cellars, and scenarios of one
+/// Format of cellar files: their fields, and the built-in files that they may extend (cellars, and scenarios of one
 /// stack).
 const LANGUAGE: Language = Language {
     root: &CELLAR,
@@ -279,7 +279,7 @@ pub const MOST_SHOCKS: usize = 20;
 pub struct Standing {
     /// Name: row and number in the row, such as "3-5".
     pub name: String,
-    /// Row, counted from 1 through all blocks.
+    /// Number of the row, from 1; the numbering continues from block to block.
     pub row: u32,
     /// Number in the row, from 1.
     pub number: u32,
@@ -293,7 +293,7 @@ pub struct Standing {
     pub azimuth: f64,
 }
 
-/// A checked cellar in SI units.
+/// A cellar whose values have been checked. All quantities are in SI units.
 #[derive(Clone, Debug)]
 pub struct Cellar {
     /// Title, in one line.
@@ -310,7 +310,7 @@ pub struct Cellar {
     pub places: Vec<Place>,
     /// Blocks of stacks.
     pub blocks: Vec<Block>,
-    /// Places from which bodies start.
+    /// Initial poses of the bodies that do not start as built.
     pub start: StartSpec,
     /// The shocks of a sequence after the first. The first shock is the motion of the stack as stated
     /// ([`Cellar::stated`]).
@@ -326,7 +326,7 @@ impl Cellar {
     /// Reads the file of a cellar and the files that it extends, and applies changes as for a scenario.
     ///
     /// # Errors
-    /// Returns the first problem found, with its place in the text.
+    /// Returns the first problem found, with its place in the file.
     pub fn load(path: &Path, changes: &[String]) -> Result<Self, ScenarioError> {
         Self::parse_file(path, &bytes_of(path)?, changes)
     }
@@ -343,7 +343,7 @@ impl Cellar {
         Self::of(&Host::parse_file(path, bytes, changes, &LANGUAGE)?)
     }
 
-    /// Reads a cellar from text, which may extend built-in cellars and scenarios only.
+    /// Reads a cellar from TOML source, which may extend only built-in cellars and scenarios.
     ///
     /// ```
     /// use barrelstack_cellar::Cellar;
@@ -367,7 +367,8 @@ impl Cellar {
         Self::of(&Host::builtin(name, changes, &LANGUAGE)?)
     }
 
-    /// `true` if a text describes a cellar, or extends a text that does; `false` if the text cannot be read.
+    /// Returns `true` if a file describes a cellar, or extends a file that does; `false` if a file cannot be read or
+    /// parsed.
     pub fn is_stated(path: Option<&Path>, bytes: &[u8]) -> bool {
         is_cellar(path, bytes, 8)
     }
@@ -855,7 +856,6 @@ fn is_cellar(path: Option<&Path>, bytes: &[u8], depth: u32) -> bool {
     }
 }
 
-/// Returns `true` if a text names a TOML file.
 fn names_a_file(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|extension| extension == "toml")
 }

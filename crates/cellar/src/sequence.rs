@@ -59,7 +59,7 @@ fn keep_fallen(before: &RoomRun, run: &mut RoomRun) {
     }
 }
 
-/// Adds a run to the runs before it.
+/// Appends the run of the next shock to `all`, the joined run of the shocks before it.
 fn add(all: &mut RoomRun, next: &RoomRun) {
     let from = all.end_time;
     let stood: Vec<bool> = all.stacks.iter().map(|stack| stack.lost_seat.is_none()).collect();

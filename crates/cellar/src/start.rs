@@ -1,4 +1,4 @@
-//! Places from which bodies start, as surveyed after an earthquake or as an earlier run has left them.
+//! Initial poses of bodies, as surveyed after an earthquake or as an earlier run has left them.
 
 use std::collections::BTreeMap;
 
@@ -17,10 +17,10 @@ use crate::plan::Model;
 use crate::room::Shift;
 use crate::scenario::Standing;
 
-/// Maximum size (bytes) of a file of starting places.
+/// Maximum size (bytes) of a file of initial poses or shifts.
 const LIMIT: usize = 16 << 20;
 
-/// Maximum number of tables [[start.shift]].
+/// Maximum number of `[[start.shift]]` tables.
 const MOST_SHIFTS: usize = 1000;
 
 section! {
@@ -51,12 +51,12 @@ table! {
     shift = Kind::Tables(&SHIFT), Default::Nothing;
 }
 
-/// Places from which bodies start.
+/// Initial poses of bodies that do not start as built, stated as poses or as shifts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StartSpec {
     /// File of shifts or poses.
     pub file: Option<FileRef>,
-    /// Shifts after those of the file.
+    /// Shifts, applied after those of the file.
     pub shifts: Vec<ShiftSpec>,
 }
 
@@ -112,8 +112,8 @@ pub(crate) struct StackStart {
     pub(crate) shifts: Vec<Shift>,
     /// Path, in the scenario, of the last entry that moves the stack.
     pub(crate) path: String,
-    /// In the file of starting places, the line of the last row that moves the stack; `None` if the last entry is in
-    /// the scenario.
+    /// Line, in the file of initial poses or shifts, of the last row that moves the stack; `None` if the last entry is
+    /// in the scenario.
     pub(crate) line: Option<usize>,
 }
 
@@ -159,7 +159,7 @@ pub(crate) fn starts(
     Ok(all)
 }
 
-/// Returns a shift along the axes of the room as a shift along those of a stack.
+/// Converts a shift along the axes of the room to the axes of a stack.
 fn own_shift(standing: &Standing, body: Option<usize>, [x, y, z]: [f64; 3], turn: f64) -> Shift {
     let (sin, cos) = math::sin_cos(standing.azimuth);
     Shift { body, by: [cos * x + sin * y, cos * y - sin * x, z], turn }
@@ -193,13 +193,13 @@ fn body_named(name: &str, stack: &str, model: &Model) -> Result<usize, String> {
         .ok_or_else(|| format!("stack \"{stack}\" has no body \"{name}\"; {}", valid(name, &known)))
 }
 
-/// Columns of poses.
+/// Names of the columns that state a pose in a CSV file.
 pub(crate) const POSE: [&str; 7] = ["x (m)", "y (m)", "z (m)", "qw", "qx", "qy", "qz"];
 
-/// Columns of shifts.
+/// Names of the columns that state a shift in a CSV file.
 const SHIFTED: [&str; 4] = ["dx (m)", "dy (m)", "dz (m)", "turn (deg)"];
 
-/// Largest coordinate of a pose, and largest displacement (m).
+/// Largest magnitude of a number in a file of initial poses or shifts, in the unit of its column.
 const FAR: f64 = 1000.0;
 
 /// Returns the cells of a line of a CSV file.
@@ -207,7 +207,7 @@ fn cells(line: &str) -> Vec<String> {
     line.split(',').map(|cell| cell.trim().trim_matches('"').to_owned()).collect()
 }
 
-/// The columns of a file.
+/// Columns of a file of initial poses or shifts, as named in its header.
 struct Columns {
     names: Vec<String>,
     /// `true` for poses, `false` for shifts.
@@ -258,7 +258,7 @@ impl Columns {
     }
 }
 
-/// A row of a file.
+/// A row of a file of initial poses or shifts.
 struct Row<'a> {
     columns: &'a Columns,
     cells: Vec<String>,
@@ -270,7 +270,7 @@ impl Row<'_> {
         at.map_or("", |at| &self.cells[at])
     }
 
-    /// Returns the numbers of some columns; zero for a column that the file does not have.
+    /// Parses the cells of the columns `names` as numbers; zero for a column that the file does not have.
     fn numbers<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], String> {
         let mut all = [0.0; N];
         for (value, name) in all.iter_mut().zip(names) {
@@ -351,7 +351,7 @@ fn of_file(
     Ok(())
 }
 
-/// Adds the pose of a row.
+/// Reads the pose of a body from a row, and adds it to the poses of its stack.
 fn add_pose(
     row: &Row<'_>,
     model: &Model,

@@ -395,7 +395,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     if count > 0.0 { sum / count } else { 0.0 }
 }
 
-/// Returns the distribution of values; zeros if there are none.
+/// Summarizes the distribution of values; all its numbers are zero if there are no values.
 fn range(values: impl Iterator<Item = f64>) -> Range {
     let zero = Range { p05: 0.0, p50: 0.0, p95: 0.0, least: 0.0, most: 0.0 };
     Range::of(values).unwrap_or(zero)
@@ -416,14 +416,18 @@ fn first(case: &Case) -> Option<usize> {
     times.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
 }
 
-/// Returns the cases that statistics count: the valid variants, or the room as stated if there are no variants.
+/// Returns the cases on which the statistics are based: the valid variants or, if there are no variants, the room as
+/// stated in its file, if its case is valid.
 pub fn counted(cases: &[Case]) -> Vec<&Case> {
     let varied = cases.iter().any(|case| case.variant > 0);
     cases.iter().filter(|case| case.valid && (case.variant > 0 || !varied)).collect()
 }
 
-/// Returns the number of the most typical case. Three numbers of this case are closest to their medians: stacks that
-/// fall by themselves, stacks that are knocked over, and barrels that fall.
+/// Returns the number of the most typical variant; `None` if no case enters the statistics.
+///
+/// For each variant, three counts are compared with their medians over all variants: stacks that fall by themselves,
+/// stacks that are knocked over, and barrels that fall. The most typical variant has the smallest sum of absolute
+/// deviations from the medians, where a barrel has 0.05 times the weight of a stack.
 pub fn typical(cases: &[Case]) -> Option<u32> {
     let counted = counted(cases);
     let numbers = |case: &Case| {
@@ -516,8 +520,8 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
     summary
 }
 
-/// Returns sentences on the sources of the motions of all shocks, each sentence once, and on the source of the places
-/// from which bodies start.
+/// Returns sentences on the sources of the motions of all shocks, each sentence once, and on the source of the initial
+/// poses of bodies.
 pub(crate) fn provenance(prepared: &Prepared) -> Vec<String> {
     let mut all = prepared.ground.provenance();
     for step in prepared.later.iter().flat_map(|later| later.ground.provenance()) {
@@ -594,8 +598,8 @@ pub(crate) fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<Sh
     grounds.enumerate().map(one).collect()
 }
 
-/// Returns the time (s) from the end of a run to the end of its motion, if stacks still move when the run ends;
-/// otherwise zero.
+/// Returns the time (s) by which the ground motion outlasts a run, if stacks still move when the run ends; otherwise
+/// zero.
 fn cut(ground: &barrelstack_space::Ground, case: &Case) -> f64 {
     let left = ground.end() - case.end_time;
     if case.cut_short && left > CUT { left } else { 0.0 }

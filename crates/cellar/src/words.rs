@@ -9,12 +9,12 @@ use barrelstack_report::{Tone, capital, listed, measured, significant};
 use crate::plan::liters;
 use crate::summary::{AisleAnswer, CellarSummary, Count, Mean, ShockAnswer, ShownShock};
 
-/// Returns a number of things, such as "1 stack" or "3 stacks".
+/// Formats a count with its noun, such as "1 stack" or "3 stacks".
 pub(crate) fn plural(count: u32, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Returns a share with its interval, such as "28 of 32 variants (88 %, 95 % interval 72 % to 95 %)".
+/// Formats a share with its interval, such as "28 of 32 variants (88 %, 95 % interval 72 % to 95 %)".
 pub(crate) fn share(count: &Count, of: u32) -> String {
     if of == 1 {
         return if count.of_variants == 0 { "no run" } else { "the only run" }.to_owned();
@@ -28,7 +28,8 @@ pub(crate) fn share(count: &Count, of: u32) -> String {
     )
 }
 
-/// Returns a range over a number of variants, such as "2.1 to 3.4 s"; one number if both ends round to the same number.
+/// Formats the range of a result over `of` variants, such as "2.1 to 3.4 s"; one number if both ends round to the same
+/// number.
 pub(crate) fn span(range: &Range, of: u32, decimals: usize, unit: &str) -> String {
     let [low, high] = range.stated(of).map(|value| format!("{value:.decimals$}"));
     if low == high { format!("{low} {unit}") } else { format!("{low} to {high} {unit}") }
@@ -43,7 +44,8 @@ pub(crate) fn shown_run(summary: &CellarSummary) -> String {
     }
 }
 
-/// Returns the sentence on work that was stopped. If there is only one run, it was stopped at `end_time` (s).
+/// Returns the sentence that states when the work was stopped: for a single run, at the simulated time `end_time` (s);
+/// for several runs, after how many of them.
 pub(crate) fn stopped(unfinished: &Unfinished, end_time: f64) -> String {
     let Unfinished { done, of } = unfinished;
     if *of == 1 {
@@ -56,25 +58,25 @@ pub(crate) fn stopped(unfinished: &Unfinished, end_time: f64) -> String {
     )
 }
 
-/// Returns the time (s) from the end of the run that is shown to the end of its motion, if stacks still move when the
-/// run ends; for a sequence, the longest such time of its shocks. `None` if there is no such time.
+/// Returns the time (s) by which the ground motion outlasts the run that is shown, if stacks still move when the run
+/// ends; otherwise `None`. For a sequence, returns the longest such time of its shocks.
 pub(crate) fn missing(summary: &CellarSummary) -> Option<f64> {
     Some(summary.shown.cut).filter(|cut| *cut > 0.0)
 }
 
-/// Returns the longest time (s) from the end of the run of a shock to the end of its motion, among the runs that end
-/// while stacks still move; `None` if there is no such run.
+/// Returns the longest time (s) by which the ground motion of a shock outlasts the run of this shock. Only runs that
+/// end while stacks still move count; `None` if there is no such run.
 pub(crate) fn longest_cut<'a>(shocks: impl Iterator<Item = &'a ShockAnswer>) -> Option<f64> {
     let cut = shocks.filter_map(|shock| Some(shock.shown.as_ref()?.cut)).fold(0.0, f64::max);
     Some(cut).filter(|cut| *cut > 0.0)
 }
 
-/// Returns the sentence that states by how much time, `cut` (s), the run of a shock ends before its motion.
+/// Returns the sentence that states that the ground motion of a shock outlasts the run of this shock by `cut` (s).
 pub(crate) fn followed(cut: f64) -> String {
     format!("The run of a shock ends {cut:.1} s before its motion does.")
 }
 
-/// Returns a share with its interval, such as "80 % (95 % interval 61 % to 92 %)".
+/// Formats a mean share with its interval, such as "80 % (95 % interval 61 % to 92 %)".
 pub(crate) fn mean_share(share: &Mean) -> String {
     let [mean, low, high] = [share.mean, share.interval[0], share.interval[1]].map(percent);
     format!("{mean} (95 % interval {low} to {high})")
@@ -204,7 +206,7 @@ fn shock_by_shock(summary: &CellarSummary) -> String {
     stated.collect::<Vec<_>>().join("; ")
 }
 
-/// Returns an ordinal number up to 20.
+/// Formats an ordinal number up to 20: as a word up to "tenth", then with digits, such as "11th".
 fn ordinal(number: u32) -> String {
     const WORDS: [&str; 10] = [
         "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth",
@@ -351,8 +353,8 @@ fn blocked(summary: &CellarSummary) -> String {
     }
 }
 
-/// Returns a phrase that names the shock in which a time (s) lies, counted from the start of the shaking in the run
-/// that is shown; `None` for a single shock.
+/// Returns a phrase that names the shock in which a time lies, such as "in the second shock"; `None` for a single
+/// shock. The time (s) is counted from the start of the shaking in the run that is shown.
 fn shock_at(summary: &CellarSummary, time: f64) -> Option<String> {
     let mut left = summary.onset + time;
     let number = summary.shocks.iter().find_map(|shock| {
@@ -498,12 +500,14 @@ fn falls(summary: &CellarSummary) -> String {
     )
 }
 
-/// Returns the peaks of a component of the ground motion from its acceleration (m/s²) and its velocity (m/s).
+/// Formats the peak acceleration (m/s²) of a component of the ground motion in g, and its peak velocity (m/s) in
+/// centimeters per second.
 fn peaks(acceleration: f64, velocity: f64) -> String {
     format!("up to {:.2} g and {:.0} cm/s", acceleration / STANDARD_GRAVITY, 100.0 * velocity)
 }
 
-/// Returns the sentence on an aisle over a number of variants.
+/// Describes an aisle over `of` variants: when the first barrel enters it, how much of it is covered at the end, and in
+/// how many variants it is blocked.
 fn of_aisle(aisle: &AisleAnswer, of: u32) -> String {
     let Some(first) = &aisle.first_barrel else {
         return format!("No barrel enters the aisle \"{}\".", aisle.name);

@@ -134,7 +134,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Returns a body, and its contact kind.
+    /// Returns a body or an obstacle of the room, and the index of its contact kind.
     pub(crate) fn body(&self, owner: Owner) -> (&Body<Spatial>, usize) {
         match owner {
             Owner::Stack((stack, body)) => {
@@ -164,7 +164,8 @@ impl<'a> World<'a> {
 /// into each other.
 pub(crate) const PRESSED: f64 = 5.0 * ALLOWED;
 
-/// Length (m) by which shifts may at most increase the deepest overlap of a stack at rest.
+/// Maximum increase (m) of the deepest overlap within a stack when its bodies are shifted from their poses at rest; a
+/// larger increase is an error.
 const DEEPENED: f64 = 0.5 * ALLOWED;
 
 /// Moves the bodies of a stack to the poses from which it starts, at rest and without contact history.
