@@ -23,11 +23,11 @@ use std::time::{Duration, Instant};
 use crate::common::{HEAD, barrelstack};
 
 /// Time after which a line is stopped.
-const AWAIT: Duration = Duration::from_secs(2);
+const AWAIT: Duration = Duration::from_secs(1);
 /// Time (ms) beyond [`AWAIT`] that all lines of all documents share, in which most of them end by themselves.
-static PATIENCE: AtomicU64 = AtomicU64::new(20_000);
+static PATIENCE: AtomicU64 = AtomicU64::new(12_000);
 /// Largest share (ms) of one line.
-const SHARE: u64 = 4_000;
+const SHARE: u64 = 3_000;
 /// Time within which a stopped line ends; measured 0.1 to 2 s, on a busy machine more.
 const AT_MOST: Duration = Duration::from_secs(60);
 /// Exit status of a stopped command.
