@@ -204,14 +204,14 @@ fn variants(summary: &Summary) -> Option<Table> {
         let percent = barrelstack::variants::words::percent;
         let [low, high] = spread.interval.map(percent);
         row(
-            "share that collapses, with its 95 % interval",
+            "share of variants that collapse, with its 95 % interval",
             format!("{} ({low} to {high})", percent(share)),
         );
     }
     if let Some([low, high]) =
         spread.range.map(|range| range.map(barrelstack::variants::words::percent))
     {
-        row("range of the share over uncertain constants", format!("{low} to {high}"));
+        row("range of this share over the uncertain constants", format!("{low} to {high}"));
     }
     let range = |Range { p05, p95, .. }: Range, decimals: usize| {
         format!("{p05:.decimals$} to {p95:.decimals$}")

@@ -6,7 +6,7 @@ use super::{Difference, Side, letter};
 use crate::demand::DEMANDS;
 use crate::report;
 use crate::variants::Spread;
-use crate::variants::words::{course, percent};
+use crate::variants::words::{course, course_in_plane, percent};
 
 /// Creates an empty table: the `first` columns, one column per run, then the `last` columns.
 fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &str)]) -> Table {
@@ -64,6 +64,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
         });
         row("first loss of a seat, and barrels fallen, in the variants that collapse", &|side| {
             let spread = side.summary.ensemble().filter(|spread| spread.collapsed > 0);
+            let course = if side.other.is_some() { course_in_plane } else { course };
             Cell::maybe(spread.map(course))
         });
         row("shown", &|side| match side.summary.variant() {
@@ -88,8 +89,9 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
     row("first fall", &|side| seconds(side.summary.outcome().first_fall));
     row("barrels fallen", &|side| {
         let outcome = side.summary.outcome();
+        let place = if side.other.is_some() { " in this plane" } else { "" };
         let fallen = outcome.barrels_fallen;
-        Cell::maybe(fallen.map(|fallen| format!("{fallen} of {}", outcome.barrels)))
+        Cell::maybe(fallen.map(|fallen| format!("{fallen} of {}{place}", outcome.barrels)))
     });
     row("end of the run", &|side| seconds(Some(side.end_time)));
     table

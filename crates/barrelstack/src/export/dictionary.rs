@@ -40,13 +40,13 @@ const MEANINGS: [(&str, &str); 39] = [
         "coordinate",
         "position along the boundary: an angle on a round boundary, a length on a straight boundary",
     ),
-    ("length_of_boundary", "length of boundary on which the stress acts at rest"),
-    ("stress_at_rest", "normal stress at rest"),
+    ("length_of_boundary", "length of boundary on which the line load acts at rest"),
+    ("stress_at_rest", "line load at rest: normal force per length of boundary"),
     (
         "peak_stress_until_first_loss_of_seat",
-        "largest normal stress until the first loss of a seat",
+        "largest line load until the first loss of a seat",
     ),
-    ("peak_stress_of_whole_run", "largest normal stress over the whole run"),
+    ("peak_stress_of_whole_run", "largest line load over the whole run"),
     (
         "_displacement_x",
         "displacement to the right from the position at rest, relative to the ground",

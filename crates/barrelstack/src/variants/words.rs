@@ -224,7 +224,11 @@ pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
         worst(&placed).and_then(|(_, spread)| measure(spread)).into_iter().collect();
     let falls = planes.iter().filter(|(_, spread)| spread.collapsed > 0);
     let sentence = |(view, spread): &(View, &Spread)| {
-        format!("In the variants in which the stack falls {}, {}.", view.words(), course(spread))
+        format!(
+            "In the variants in which the stack falls {}, {}.",
+            view.words(),
+            course_in_plane(spread)
+        )
     };
     sentences.extend(falls.filter(|_| planes.len() > 1).map(sentence));
     sentences
@@ -299,6 +303,15 @@ pub fn fate(spread: &Spread) -> String {
 /// Describes the time and the extent of the fall, such as "the first seat is lost between 5.6 and
 /// 6.4 s; 4 to 8 of 10 barrels fall".
 pub fn course(spread: &Spread) -> String {
+    course_of("barrels", spread)
+}
+
+/// Like [`course`], for a stack that was simulated in both planes: its barrels are those in the plane.
+pub(crate) fn course_in_plane(spread: &Spread) -> String {
+    course_of("barrels in this plane", spread)
+}
+
+fn course_of(noun: &str, spread: &Spread) -> String {
     if spread.collapsed == spread.cannot_stand {
         return "the stack falls before it is shaken".to_owned();
     }
@@ -315,22 +328,22 @@ pub fn course(spread: &Spread) -> String {
         (Some(_), Some(fallen)) => {
             let range = fallen.stated(spread.collapsed);
             let fall = if range[1] < 1.5 && range[0] > 0.5 { "falls" } else { "fall" };
-            format!("{} {fall}", barrels(range, spread.barrels))
+            format!("{} {fall}", barrels(range, spread.barrels, noun))
         }
         _ => "no barrel falls".to_owned(),
     };
     format!("{when}{fallen}{}", spread.counted("that"))
 }
 
-/// Describes the number of fallen barrels, such as "4 to 8 of 10 barrels".
-fn barrels(fallen: [f64; 2], all: usize) -> String {
+/// Describes the number of fallen barrels, such as "4 to 8 of 10 barrels"; `noun` is the word for the barrels.
+fn barrels(fallen: [f64; 2], all: usize, noun: &str) -> String {
     let [from, to] = fallen.map(|count| format!("{count:.0}"));
     if from != to {
-        format!("{from} to {to} of {all} barrels")
+        format!("{from} to {to} of {all} {noun}")
     } else if to == all.to_string() {
-        format!("all {all} barrels")
+        format!("all {all} {noun}")
     } else {
-        format!("{to} of {all} barrels")
+        format!("{to} of {all} {noun}")
     }
 }
 

@@ -93,8 +93,8 @@ export async function ofRun(page, summary) {
       const cell = (name, values) => reading.are(`${name}, ${head}`, row(name)[at + 1], values);
       cell("variants with a verdict", [variants]);
       cell("variants that collapse", [collapsed]);
-      cell("share that collapses, with its 95 % interval", percents([share, ...interval]));
-      if (range) cell("range of the share over uncertain constants", percents(range));
+      cell("share of variants that collapse, with its 95 % interval", percents([share, ...interval]));
+      if (range) cell("range of this share over the uncertain constants", percents(range));
       if (loss) cell("first loss of a seat", [loss.p05, loss.p95]);
       if (fall) cell("first fall", [fall.p05, fall.p95]);
       if (fallen) cell("barrels fallen in a collapse", [fallen.p05, fallen.p95, barrels]);
@@ -112,7 +112,7 @@ export async function ofRun(page, summary) {
     });
   }
   const inSpace = summary.bodies.some((body) => "drop" in body);
-  const tables = tablesOf(shown, inSpace ? "Slips are" : "Largest slip");
+  const tables = tablesOf(shown, inSpace ? "Slips are" : "The largest slip");
   demand(tables.length === planes.length, `${tables.length} tables of bodies in ${planes.length} planes`);
   tables.forEach((table, plane) => {
     const { bodies } = planes[plane], column = (begin) => table.head.findIndex((head) => head.startsWith(begin));
