@@ -158,7 +158,7 @@ fn effect(sides: &[Side]) -> Option<String> {
         let ([from, to], of) = (pair.collapsed(), pair.pairs());
         let place = place(first, pair);
         let change = match to.cmp(&from) {
-            Ordering::Equal => "as before".to_owned(),
+            Ordering::Equal => "as many as before".to_owned(),
             Ordering::Less => format!("down from {from}"),
             Ordering::Greater => format!("up from {from}"),
         };
@@ -167,8 +167,9 @@ fn effect(sides: &[Side]) -> Option<String> {
         } else {
             " (too few variants to prove a difference)"
         };
-        let collapse = if at == 0 { " variants collapse" } else { "" };
-        format!("{to} of {of}{collapse}{place}, {change}{unproven}")
+        let noun = if at == 0 { " variants" } else { "" };
+        let collapse = if to == 1 { "collapses" } else { "collapse" };
+        format!("{to} of {of}{noun} {collapse}{place}, {change}{unproven}")
     };
     // The other plane is named if any variant collapses in it.
     let named =
@@ -200,28 +201,36 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             };
             let (change, [low, high]) = (points(pair.reduction.abs()), [low, high].map(points));
             let difference = if change < 1.0 {
-                "the shares differ by less than one percentage point".to_owned()
+                "The shares that collapse differ by less than one percentage point".to_owned()
             } else {
-                format!("the share of {second} is {change} percentage points {word}")
+                format!("The share that collapses is {change} percentage points {word} in {second}")
             };
             let motions = if one_motion([first, other]) {
-                " under the same motions"
+                "under the same motions"
             } else {
-                " under different motions"
+                "under different motions"
             };
             let lost = match pair.without_verdict {
                 0 => String::new(),
+                1 => " In 1 further variant, one of the two runs has no verdict.".to_owned(),
                 some => format!(" In {some} further variants, one of the two runs has no verdict."),
             };
-            let clear = if pair.is_clear() { "" } else { ", so no difference is proven" };
+            let clear = if pair.is_clear() { "" } else { ": no difference is proven" };
+            let both = match pair.both {
+                0 => "none collapses".to_owned(),
+                1 => "1 collapses".to_owned(),
+                some => format!("{some} collapse"),
+            };
+            let signed = |points: f64| points.to_string().replace('-', "−");
             format!(
-                "Of the same {} variants{motions}{}, {} collapse in both runs, {} in A only and {} in \
-                 {second} only: {difference} (95 % interval {low} to {high} points{clear}).{lost}",
+                "Of {} variants that were run both in A and in {second}, {motions}{}, {both} in both, {} in A \
+                 only and {} in {second} only. {difference} (95 % interval {} to {} points){clear}.{lost}",
                 pair.pairs(),
                 place(first, pair),
-                pair.both,
                 pair.only_first,
                 pair.only_second,
+                signed(low),
+                signed(high),
             )
         };
         Paired::of(first, other).iter().map(sentence).collect::<Vec<_>>()
@@ -263,7 +272,7 @@ fn headline(sides: &[Side]) -> String {
             }
         }
         ([up], [down]) if one_height && !straps(up) && straps(down) => {
-            format!("Straps bring the stack down: the stack stands with {}.", up.name)
+            "Straps bring the stack down: it stands without them.".to_owned()
         }
         ([], _) => format!("{} fall: {}.", capital(&all), names(&down)),
         (_, []) => format!("{} stand: {}.", capital(&all), names(&up)),
@@ -307,11 +316,12 @@ fn describe(at: usize, side: &Side) -> String {
     let shown = side.summary.ensemble() == Some(spread);
     let view = if shown { side.view } else { side.other.as_ref().map(|other| other.view) };
     let shaken = view.filter(|_| side.other.is_some());
-    let shaken = shaken.map_or_else(String::new, |view| format!("shaken {}, it ", view.words()));
+    let shaken = shaken.map_or_else(String::new, |view| format!("shaken {}, ", view.words()));
     let [low, high] = spread.interval.map(words::percent);
     let Spread { collapsed, variants, .. } = spread;
     let result = format!(
-        "{name}: {shaken}falls in {collapsed} of {variants} variants ({low} to {high} of all such stacks)"
+        "{name}: {shaken}the stack falls in {collapsed} of {variants} variants (95 % interval of the share: {low} to \
+         {high})"
     );
     let drift = side.summary.demands().top_drift_ratio.filter(|_| stands(side));
     match drift {
@@ -347,7 +357,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
     let view = sides[0].view;
     if let Some(view) = view.filter(|_| sides.iter().any(|side| side.other.is_some())) {
         sentences.push(format!(
-            "The runs are shown {}; the table of outcomes covers both planes.",
+            "The pictures show the plane {}; the table of outcomes covers both planes.",
             view.words()
         ));
     }
@@ -356,16 +366,17 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
             let shown = sides[0].summary.variant();
             let one = sides.iter().all(|side| side.summary.variant() == shown);
             match shown {
-                0 if one => "Each run is shown as stated.".to_owned(),
+                0 if one => "For every run, the page shows the stack as stated.".to_owned(),
                 _ if one => format!(
-                    "Each run is shown in variant {shown}, the most typical variant of all runs taken together{}.",
+                    "For every run, the page shows variant {shown}, the most typical variant of all runs taken \
+                     together{}.",
                     match (one_motion(sides), sides.iter().any(Side::is_spatial)) {
                         (true, true) => ", under the same motion",
                         (true, false) => ", under the same component of the motion",
                         (false, _) => "",
                     }
                 ),
-                _ => "Each run is shown in its own most typical variant.".to_owned(),
+                _ => "For every run, the page shows the most typical variant of that run.".to_owned(),
             }
         }
     } else {
