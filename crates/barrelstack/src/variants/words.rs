@@ -264,11 +264,11 @@ pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
         _ => "has no verdict".to_owned(),
     };
     let places = format!(
-        "in position by up to {} mm and in mass by {} % (one standard deviation)",
+        "in the positions of the bodies (by up to {} mm) and in their masses (with a standard deviation of {} %)",
         tenths(1e3 * imperfections.placement),
         tenths(100.0 * imperfections.mass)
     );
-    let constants = "in friction and contact constants within their uncertainty";
+    let constants = "in the friction and contact constants (drawn within their uncertainty)";
     let differ = match (imperfections.drawn, unknowns.drawn) {
         (true, false) => format!("differ from it {places}"),
         (false, true) => format!("differ from it {constants}"),
@@ -630,8 +630,7 @@ mod tests {
         let decides = "the stiffness of seats decides the outcome: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.";
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
-        let left = "After the measurement, the range is on average 55 percentage points wide \
-             instead of 83.";
+        let left = "After the measurement, this range is on average 55 percentage points wide instead of 83.";
         assert!(measured.contains("read how far it sinks. ") && measured.ends_with(left));
         // A constant whose effect may be zero does not decide; nor does one whose effect is certain but small.
         one.decides = vec![unknown([-0.1, 0.6])];
