@@ -42,10 +42,7 @@ const MEANINGS: [(&str, &str); 39] = [
     ),
     ("length_of_boundary", "length of boundary on which the line load acts at rest"),
     ("stress_at_rest", "line load at rest: normal force per length of boundary"),
-    (
-        "peak_stress_until_first_loss_of_seat",
-        "largest line load until the first loss of a seat",
-    ),
+    ("peak_stress_until_first_loss_of_seat", "largest line load until the first loss of a seat"),
     ("peak_stress_of_whole_run", "largest line load over the whole run"),
     (
         "_displacement_x",

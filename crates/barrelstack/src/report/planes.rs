@@ -125,7 +125,11 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         spread.first_fall.map(|Range { p05, p95, least, most, .. }| {
             let time = format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1));
             let counted = spread.counted("the first loss of a seat");
-            if counted.is_empty() { time } else { format!("{time}; only falls{counted} are counted") }
+            if counted.is_empty() {
+                time
+            } else {
+                format!("{time}; only falls{counted} are counted")
+            }
         })
     });
     row("barrels fallen in a collapse", &|spread| {

@@ -136,12 +136,15 @@ fn spectrum(motion: &GroundMotion, rocking: Option<&Rocking>) -> Option<Figure> 
             ([one], _) => {
                 let label = format!("stack at {}", centimeters(one.amplitude));
                 plot.marks.push(Mark { at: one.period, label });
-                caption.push_str(" A dashed line also marks the period of the only swing of the stack.");
+                caption.push_str(
+                    " A dashed line also marks the period of the only swing of the stack.",
+                );
             }
             (_, Some(_)) => {
                 let (from, to) = rocking.range();
                 plot.bands.push(Band { from, to, label: "swings of the stack".into() });
-                caption.push_str(" The periods of the swings of the stack lie in the shaded range.");
+                caption
+                    .push_str(" The periods of the swings of the stack lie in the shaded range.");
             }
             (_, None) => {}
         }

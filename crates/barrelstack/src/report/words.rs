@@ -17,8 +17,7 @@ use crate::verify::Verification;
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     let spreads = summary.spreads();
     if spreads.is_empty() {
-        let noun =
-            if summary.other_plane.is_some() { "barrels in this plane" } else { "barrels" };
+        let noun = if summary.other_plane.is_some() { "barrels in this plane" } else { "barrels" };
         return single(run, summary, run.assembly.view, noun);
     }
     variants::words::headline(&spreads)

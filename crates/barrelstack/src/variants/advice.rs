@@ -73,9 +73,13 @@ impl Remedy {
         };
         let said = match (&self.height, &self.straps) {
             (Some(height), Some(straps)) => match (range(height), range(straps)) {
-                (Some(one), Some(other)) if one == other => format!("{one} of stacks with either change"),
+                (Some(one), Some(other)) if one == other => {
+                    format!("{one} of stacks with either change")
+                }
                 (Some(one), Some(other)) => {
-                    format!("{one} of stacks with the first change and {other} of stacks with the second")
+                    format!(
+                        "{one} of stacks with the first change and {other} of stacks with the second"
+                    )
                 }
                 _ => return String::new(),
             },
@@ -110,9 +114,13 @@ impl Remedy {
         let at_most = |one: &Tried| one.interval.map(|[_, high]| percent(high));
         let most = match (&self.height, &self.straps) {
             (Some(height), Some(straps)) => match (at_most(height), at_most(straps)) {
-                (Some(height), Some(straps)) if height == straps => format!("{height} of stacks with either change"),
+                (Some(height), Some(straps)) if height == straps => {
+                    format!("{height} of stacks with either change")
+                }
                 (Some(height), Some(straps)) => {
-                    format!("{height} of stacks with the first change and {straps} of stacks with the second")
+                    format!(
+                        "{height} of stacks with the first change and {straps} of stacks with the second"
+                    )
                 }
                 _ => return String::new(),
             },

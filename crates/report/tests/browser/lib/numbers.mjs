@@ -191,7 +191,7 @@ export async function ofHeights(page, { heights }) {
 export async function ofStudy(page, decision) {
   const shown = await contents(page), reading = new Reading();
   isHeadline(shown, decision);
-  const [table] = tablesOf(shown, "Raw counts of collapse"), { raw, median, median_interval: interval } = decision.fragility[0];
+  const [table] = tablesOf(shown, 'Cases that reach the limit state "collapse'), { raw, median, median_interval: interval } = decision.fragility[0];
   reading.are("median in the headline", shown.headline, [median, ...interval].map((value) => 100 * value));
   demand(table.rows.length === raw.length, "the page has other levels than the JSON");
   raw.forEach(({ intensity, cases, failures, interval }, at) => {
