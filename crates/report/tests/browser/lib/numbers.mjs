@@ -234,7 +234,7 @@ export async function ofProtection(page, document) {
     reading.are(`cost of ${name}`, cell("cost"), cost[0] === cost[1] ? [cost[0]] : cost);
     reading.are(`collapse with ${name}`, cell("collapse"), percents(ends(collapse)));
     reading.are(`barrels fallen with ${name}`, cell("barrels fallen"), ends(fallen));
-    reading.are(`barrels saved by ${name}`, cell("fewer fall"), saved === null ? [null] : ends(saved));
+    reading.are(`barrels saved by ${name}`, cell("barrels saved"), saved === null ? [null] : ends(saved));
     reading.are(`motions of ${name}`, cell("motions"), [motions]);
   }
   return reading.close();
