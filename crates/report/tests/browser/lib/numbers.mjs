@@ -348,7 +348,7 @@ export async function ofAftershocks(page, document) {
     demand(order.rows[at][0] === name, `place ${at} is that of ${order.rows[at][0]}`);
     const cell = cellsOf(order, name);
     reading.are(`${name} stands`, cell("stands after"), shareOf(stands));
-    falls.forEach((one, k) => reading.are(`${name} falls`, cell(`falls under ${document.aftershocks[k].factor}`), shareOf(one)));
+    falls.forEach((one, k) => reading.are(`${name} falls`, cell(`falls under strength ${document.aftershocks[k].factor}`), shareOf(one)));
   });
   return reading.close();
 }
