@@ -188,10 +188,10 @@ fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
-            "Ranges span the 5th to the 95th percentile of the variants. The direction of the first body is the one \
-             in which it left its seat. The direction of a barrel that fell{} leads from its position at rest to its \
-             position at the end of the variant.",
-            spread.counted("the first loss")
+            "Ranges span the 5th to the 95th percentile of the variants. The first body is the first that loses its \
+             seat; its direction is that in which it leaves the seat. The direction of a barrel that fell{} leads \
+             from its position at rest to its position at the end of the variant.",
+            spread.counted("the first loss of a seat")
         ),
         &[("", ""), ("in three dimensions", "")],
     );
@@ -220,7 +220,13 @@ fn variants(summary: &Summary) -> Option<Table> {
         row("first loss of a seat", format!("{} s", range(loss, 1)));
     }
     if let Some(fall) = spread.first_fall {
-        row("first fall", format!("{} s{}", range(fall, 1), spread.counted("the first loss")));
+        let counted = spread.counted("the first loss of a seat");
+        let only = if counted.is_empty() {
+            String::new()
+        } else {
+            format!("; only falls{counted} are counted")
+        };
+        row("first fall", format!("{} s{only}", range(fall, 1)));
     }
     if let Some(fallen) = spread.barrels_fallen {
         row(
@@ -246,8 +252,14 @@ fn variants(summary: &Summary) -> Option<Table> {
                 away + near
             )
         };
-        row("first body", four([d.first_right, d.first_left, d.first_away, d.first_near]));
-        row("fallen barrels", four([d.debris_right, d.debris_left, d.debris_away, d.debris_near]));
+        row(
+            "direction of the first body",
+            four([d.first_right, d.first_left, d.first_away, d.first_near]),
+        );
+        row(
+            "directions of the fallen barrels",
+            four([d.debris_right, d.debris_left, d.debris_away, d.debris_near]),
+        );
     }
     if spread.cannot_stand > 0 {
         row(
