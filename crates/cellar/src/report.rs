@@ -127,7 +127,7 @@ pub fn document(answer: &Answer) -> Document {
         shown_run(summary)
     );
     let mut blocks = vec![
-        heading("Where barrels end"),
+        heading("Where the barrels end up"),
         Block::Figure(Figure::new("plan", caption, picture(answer))),
     ];
     blocks.extend(players(answer));

@@ -208,7 +208,7 @@ pub fn document(layouts: &[Layout], found: &CellarComparison) -> Document {
         Block::Table(table(found)),
         heading("How the stacks fall"),
         Block::Table(courses(found)),
-        heading("Where barrels end"),
+        heading("Where the barrels end up"),
     ];
     blocks.extend(layouts.iter().enumerate().map(|(at, layout)| {
         let caption = format!(
