@@ -390,7 +390,8 @@ type Column<'a> = (&'a str, &'a str, Box<dyn Fn(&Margin) -> Cell + 'a>);
 /// Returns the report as a document that does not depend on the output format.
 pub fn document(summary: &AftershockSummary) -> Document {
     let [strengths, stacks] = tables(summary);
-    let mut blocks = vec![Block::heading(2, "By strength"), Block::Table(strengths)];
+    let mut blocks =
+        vec![Block::heading(2, "Results by strength of the aftershock"), Block::Table(strengths)];
     if !summary.inspection.is_empty() {
         blocks.extend([Block::heading(2, "What to inspect first"), Block::Table(stacks)]);
     }

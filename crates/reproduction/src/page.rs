@@ -59,7 +59,11 @@ pub(super) fn headline(rows: &[Comparison]) -> String {
     if count(Agreement::InBand) > 0 {
         let _ = write!(text, ", {} more within a wider band", count(Agreement::InBand));
     }
-    let _ = write!(text, ", {} differ", count(Agreement::Differs));
+    let differ = match count(Agreement::Differs) {
+        1 => "1 differs".to_owned(),
+        some => format!("{some} differ"),
+    };
+    let _ = write!(text, ", {differ}");
     text.push('.');
     text
 }

@@ -138,9 +138,9 @@ pub fn document(answer: &Answer) -> Document {
 /// Returns the table of the numbers of the run that is shown.
 fn numbers(run: &Run, summary: &Summary) -> Block {
     let caption = if run.stack.is_free() {
-        "The run that is shown."
+        "Results of the run that is shown."
     } else {
-        "The run that is shown. Demands are the largest values until the first loss of seat."
+        "Results of the run that is shown. Demands are the largest values until the first loss of a seat."
     };
     let mut numbers = Table::new(caption, &[("", ""), ("", "")]);
     let row = |(a, b)| vec![Cell::text(a), Cell::text(b)];
@@ -173,7 +173,7 @@ fn of_variants(summary: &Summary) -> Vec<Block> {
     }
     let decides = summary.ensemble.as_ref().map(|spread| unknowns(&[("", spread)]));
     if let Some(decides) = decides.filter(|blocks| !blocks.is_empty()) {
-        blocks.push(heading("What decides"));
+        blocks.push(heading("What decides the outcome"));
         blocks.extend(decides);
     }
     if let Some(found) = &summary.remedy {

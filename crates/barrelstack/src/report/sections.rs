@@ -34,7 +34,7 @@ pub(super) fn all(
     section(&mut blocks, 2, "What would have kept the stack up", remedy);
     let placed: Vec<(&str, &Spread)> =
         spreads.iter().map(|(view, spread)| (view.words(), *spread)).collect();
-    section(&mut blocks, 2, "What decides", unknowns(&placed));
+    section(&mut blocks, 2, "What decides the outcome", unknowns(&placed));
     section(&mut blocks, 2, "Results of all variants", planes::variants(summary));
     section(&mut blocks, 2, "Collapse sequence", sequence(run, scene));
     let trusted = summary.verification.as_ref().map(trust).unwrap_or_default();
@@ -174,7 +174,7 @@ fn fates(summary: &Summary) -> Table {
         &summary.bodies,
         &[
             ("body", "", &|body| Cell::text(&body.name)),
-            ("left seat", "s", &|body| Cell::measured(body.left_seat_at, 2)),
+            ("left its seat", "s", &|body| Cell::measured(body.left_seat_at, 2)),
             ("fell", "s", &|body| Cell::measured(body.fell_at, 2)),
             ("fall height", "m", &|body| Cell::measured(body.fall_height, 2)),
             ("largest slip", "cm", &|body| Cell::Measured(100.0 * body.peak_slip, 1)),
