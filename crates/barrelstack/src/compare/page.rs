@@ -130,10 +130,10 @@ fn effect(sides: &[Side]) -> Option<String> {
                 return None;
             }
             let one = of().next()?;
-            let base = format!("{} of {all} variants with {}", one.collapsed()[0], first.name);
+            let base = format!("{} of {all} variants {}", one.collapsed()[0], having(first));
             let rest = of()
                 .zip(others)
-                .map(|(pair, other)| format!("{} with {}", pair.collapsed()[1], other.name));
+                .map(|(pair, other)| format!("{} {}", pair.collapsed()[1], having(other)));
             let counts = listed(std::iter::once(base).chain(rest));
             let none = of().all(|pair| pair.collapsed() == [0, 0]);
             // The other plane is named if any variant collapses in it.
@@ -152,7 +152,11 @@ fn effect(sides: &[Side]) -> Option<String> {
     let cause = match (levels(first) == levels(second), straps(first), straps(second)) {
         (true, false, true) => "With straps".to_owned(),
         (true, true, false) => "Without straps".to_owned(),
-        _ => format!("With {} instead of {}", second.name, first.name),
+        _ => {
+            let [own, its] = [second, first].map(|side| side.name.as_str());
+            let bare = |name| str::strip_prefix(name, "with ").unwrap_or(name);
+            format!("With {} instead of {}", bare(own), bare(its))
+        }
     };
     let clause = |(at, pair): (usize, &Paired)| {
         let ([from, to], of) = (pair.collapsed(), pair.pairs());
@@ -294,18 +298,27 @@ fn cut_short(sides: &[Side]) -> String {
         .to_owned()
 }
 
+/// Returns words for what a run has, to follow a noun: "with five levels", or "without straps" for a run of that name.
+fn having(side: &Side) -> String {
+    let is_said = ["with ", "without "].iter().any(|word| side.name.starts_with(word));
+    if is_said { side.name.clone() } else { format!("with {}", side.name) }
+}
+
 /// Describes the runs whose variants fall under their own weight, before they are shaken.
 fn by_themselves(sides: &[Side]) -> String {
     let fallen = |side: &Side| {
         let worst = spreads(side).max_by_key(|spread| spread.cannot_stand)?;
         let (some, all) = (worst.cannot_stand, worst.run());
-        (some > 0).then(|| format!("{some} of {all} variants with {}", side.name))
+        (some > 0).then(|| (some, format!("{some} of {all} variants {}", having(side))))
     };
-    let all: Vec<String> = sides.iter().filter_map(fallen).collect();
-    if all.is_empty() {
-        return String::new();
-    }
-    capital(&format!("{} fall under their own weight, before they are shaken. ", listed(all)))
+    let all: Vec<(u32, String)> = sides.iter().filter_map(fallen).collect();
+    let (fall, they) = match all.as_slice() {
+        [] => return String::new(),
+        [(1, _)] => ("falls under its", "it is"),
+        _ => ("fall under their", "they are"),
+    };
+    let names = listed(all.into_iter().map(|(_, name)| name));
+    capital(&format!("{names} {fall} own weight, before {they} shaken. "))
 }
 
 /// Describes the result of a run: the share of collapses with its interval and, if the stack
