@@ -436,9 +436,10 @@ impl Verification {
                 )
             } else {
                 let others = self.repeats.iter().filter(|repeat| !repeat.same_outcome).count();
+                let end = if others == 1 { "ends" } else { "end" };
                 format!(
                     "The outcome is not robust: {others} of {count} repeats, with a finer step or with barrels \
-                     displaced by a nanometer, end differently; judge this stack by many variants."
+                     displaced by a nanometer, {end} differently; judge this stack by many variants."
                 )
             });
             sentences.extend(first_fall_within.map(|late| {
@@ -448,6 +449,7 @@ impl Verification {
                 )
             }));
             sentences.extend((most > 0).then(|| match least {
+                1 if most == 1 => "1 barrel falls in the run and in all repeats.".to_owned(),
                 _ if least == most => format!("{most} barrels fall in the run and in all repeats."),
                 _ => format!("The number of barrels that fall is not robust: {least} to {most}."),
             }));

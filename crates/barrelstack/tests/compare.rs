@@ -219,7 +219,8 @@ fn all_panes_show_one_variant_under_one_motion_and_the_headline_is_the_effect() 
     assert_eq!((paired.collapsed(), paired.pairs()), (counts, 6));
     let [from, to] = counts;
     let headline = &document.verdict.headline;
-    let change = if from == to { ", as before".to_owned() } else { format!(" from {from}") };
+    let change =
+        if from == to { ", as many as before".to_owned() } else { format!(" from {from}") };
     assert!(headline.contains(&change), "{headline}");
     assert!(headline.contains(&format!(", {to} of 6 variants collapse")), "{headline}");
     assert!(headline.starts_with("With two levels instead of five levels, "), "{headline}");

@@ -355,7 +355,7 @@ fn a_page_of_both_planes_has_the_inputs_as_given_and_a_part_for_engineers_of_eac
     }
     let page = markdown(&answer_document(&answer), "figures");
     for view in ["Across the barrels", "Along the barrels"] {
-        let part = format!("{view}: bodies, demands, stresses, forces, motion, energies");
+        let part = format!("{view}: bodies, demands, line loads, forces, motion, energies");
         assert!(page.text.contains(&part), "{part}");
     }
     assert!(page.text.contains("| stack.view | both |"), "{}", page.text);

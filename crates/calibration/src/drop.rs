@@ -8,7 +8,7 @@ use barrelstack_report::{Axis, Figure};
 
 use super::figures::{curve, figure, fitted, measured};
 use super::least_squares::{self, Fit, Start};
-use super::result::{quoted, rounded, short};
+use super::result::{bodies, quoted, rounded, short};
 use super::statistics::mean;
 use super::{CalibrateError, Calibration, Estimate, Table, impact};
 
@@ -58,7 +58,10 @@ pub fn drop(
     let figures = vec![found.figure];
     let e = found.restitution.value;
     let mut estimates = vec![found.restitution];
-    let mut facts = vec![("impacts".to_owned(), found.impacts.to_string())];
+    let mut facts = vec![
+        ("bodies".to_owned(), bodies(interface).to_owned()),
+        ("impacts".to_owned(), found.impacts.to_string()),
+    ];
     let scenario;
     if let (Some(striker), Some((log_ratio, half))) = (striker, found.log_ratio) {
         let per_node = |ratio: f64| striker.constants(ratio).1 / f64::from(striker.nodes);
@@ -91,7 +94,11 @@ pub fn drop(
             rounded(e)
         );
     }
-    let title = format!("drop test {}: rebound of the speed-gap law", table.file());
+    let title = format!(
+        "drop test {}: rebound of {} with the speed-gap law",
+        table.file(),
+        bodies(interface)
+    );
     Ok(Calibration {
         title,
         estimates,

@@ -9,7 +9,7 @@ use barrelstack_report::{Axis, Figure};
 
 use super::drop::GRAVITY;
 use super::figures::{figure, level, measured, span};
-use super::result::{rounded, short};
+use super::result::{bodies, rounded, short};
 use super::statistics::{line, mean};
 use super::{CalibrateError, Calibration, Estimate, Table};
 
@@ -99,9 +99,12 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
         format!("the interval of {} reaches zero: repeat the test", estimate.name)
     }));
     Ok(Calibration {
-        title: format!("{test} test {}: friction", table.file()),
-        figures: vec![picture(table, &coefficients, &estimates)?],
-        facts: vec![("tests".to_owned(), rest.len().to_string())],
+        title: format!("{test} test {}: friction of {}", table.file(), bodies(interface)),
+        figures: vec![picture(table, bodies(interface), &coefficients, &estimates)?],
+        facts: vec![
+            ("bodies".to_owned(), bodies(interface).to_owned()),
+            ("tests".to_owned(), rest.len().to_string()),
+        ],
         estimates,
         scenario,
         warnings,
@@ -113,6 +116,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
 /// pull tests, and the number of the test for tilt tests.
 fn picture(
     table: &Table,
+    bodies: &str,
     coefficients: &[Option<Vec<f64>>; 2],
     estimates: &[Estimate],
 ) -> Result<Figure, CalibrateError> {
@@ -129,8 +133,10 @@ fn picture(
         let label = format!("{}, single tests", estimate.name);
         series.push(measured(&label, x.clone(), values.clone(), index));
     }
-    let caption = "Coefficient of friction of every test, and the mean with its 95 % interval.";
-    Ok(figure("friction-tests", caption, [axis, Axis::new("coefficient of friction", "")], series))
+    let caption = format!(
+        "Coefficient of friction of {bodies} in every test, and the mean with its 95 % interval."
+    );
+    Ok(figure("friction-tests", &caption, [axis, Axis::new("coefficient of friction", "")], series))
 }
 
 /// Returns the standard deviation of ln μ that is expected for a further test: it includes the scatter of the tests and

@@ -60,6 +60,22 @@ pub struct Calibration {
     pub warnings: Vec<String>,
 }
 
+/// Returns words for a pair of bodies from its name in a scenario: "barrels on racks" for "barrel-rack". Other names
+/// stay as they are.
+pub(super) fn bodies(interface: &str) -> &str {
+    match interface {
+        "rack-ground" => "racks on the ground",
+        "barrel-rack" => "barrels on racks",
+        "rack-rack" => "racks on racks",
+        "barrel-barrel" => "barrels on barrels",
+        "barrel-ground" => "barrels on the ground",
+        "fallen-barrel-rack" => "fallen barrels on racks",
+        "fallen-rack-ground" => "fallen racks on the ground",
+        "fallen-rack-rack" => "fallen racks on racks",
+        other => other,
+    }
+}
+
 impl Estimate {
     /// Creates an estimate with a symmetric interval.
     pub(super) fn symmetric(name: &str, value: f64, half: f64, dimension: Dimension) -> Self {

@@ -7,7 +7,7 @@ use barrelstack_report::{Axis, Figure};
 
 use super::drop::GRAVITY;
 use super::figures::{curve, figure, measured, span};
-use super::result::{quoted, short};
+use super::result::{bodies, quoted, short};
 use super::statistics::line;
 use super::{CalibrateError, Calibration, Estimate, Table};
 
@@ -87,8 +87,13 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
     let depths: Vec<f64> = sag.iter().map(|sag| 1e3 * sag).collect();
     let forces: Vec<f64> = press.iter().map(|force| 1e-3 * force).collect();
     Ok(Calibration {
-        title: format!("sag test {}: sag proportional to load", table.file()),
+        title: format!(
+            "sag test {}: stiffness of {} (sag proportional to load)",
+            table.file(),
+            bodies(interface)
+        ),
         facts: vec![
+            ("bodies".to_owned(), bodies(interface).to_owned()),
             ("rows".to_owned(), load.len().to_string()),
             ("seats that share the load".to_owned(), seats.to_string()),
             ("scatter of the sag".to_owned(), format!("{} mm", short(1e3 * scatter))),

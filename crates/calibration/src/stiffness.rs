@@ -5,7 +5,7 @@ use barrelstack_fragility::student_quantile;
 use barrelstack_report::{Axis, Figure};
 
 use super::figures::{curve, figure, measured, span};
-use super::result::{quoted, short};
+use super::result::{bodies, quoted, short};
 use super::statistics::line;
 use super::{CalibrateError, Calibration, Estimate, Table};
 
@@ -82,6 +82,7 @@ pub fn stiffness(
     }
     let scatter = (found.squares / found.freedom as f64).sqrt();
     let facts = vec![
+        ("bodies".to_owned(), bodies(interface).to_owned()),
         ("rows".to_owned(), force.len().to_string()),
         ("nodes that share the force".to_owned(), nodes.to_string()),
         ("scatter of the force".to_owned(), format!("{} N", short(scatter))),
@@ -92,7 +93,11 @@ pub fn stiffness(
         quoted(per_node, Dimension::STIFFNESS)
     );
     Ok(Calibration {
-        title: format!("press test {}: force proportional to penetration", table.file()),
+        title: format!(
+            "press test {}: stiffness of {} (force proportional to penetration)",
+            table.file(),
+            bodies(interface)
+        ),
         estimates: vec![stiffness, seating],
         figures: vec![picture(&penetration, &force, slope, offset)],
         facts,

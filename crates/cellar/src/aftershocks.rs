@@ -233,16 +233,18 @@ fn headline(summary: &AftershockSummary) -> String {
             Some(share) => mean_share(&share),
             None => surviving(&one.shock).to_string(),
         };
+        let survive = if some == "1" { "survives" } else { "survive" };
         match at {
-            0 => format!("{some} survive an aftershock of {}", strength(summary, one.factor)),
-            _ => format!("{some} survive one of {}", one.factor),
+            0 => format!("{some} {survive} an aftershock of {}", strength(summary, one.factor)),
+            _ => format!("{some} {survive} one of {} times", one.factor),
         }
     };
     let clauses = listed(summary.aftershocks.iter().enumerate().map(clause));
     let stood = first.shock.stood;
     if of == 1 {
+        let stand = if stood.to_string() == "1" { "stands" } else { "stand" };
         return format!(
-            "Of {stacks} stacks, {stood} stand after the main shock, in one run. Of these, {clauses}.{cut}"
+            "Of {stacks} stacks, {stood} {stand} after the main shock, in one run. Of these, {clauses}.{cut}"
         );
     }
     format!(
@@ -304,8 +306,11 @@ pub fn tables(summary: &AftershockSummary) -> [Table; 2] {
             }),
         ],
     );
-    let names: Vec<String> =
-        summary.aftershocks.iter().map(|one| format!("falls under {}", one.factor)).collect();
+    let names: Vec<String> = summary
+        .aftershocks
+        .iter()
+        .map(|one| format!("falls under strength {}", one.factor))
+        .collect();
     let mut columns: Vec<Column<'_>> = vec![
         ("stack", "", Box::new(|one| Cell::text(&one.name))),
         ("stands after the main shock", "", Box::new(|one| count(&one.stands))),
@@ -385,7 +390,8 @@ type Column<'a> = (&'a str, &'a str, Box<dyn Fn(&Margin) -> Cell + 'a>);
 /// Returns the report as a document that does not depend on the output format.
 pub fn document(summary: &AftershockSummary) -> Document {
     let [strengths, stacks] = tables(summary);
-    let mut blocks = vec![Block::heading(2, "By strength"), Block::Table(strengths)];
+    let mut blocks =
+        vec![Block::heading(2, "Results by strength of the aftershock"), Block::Table(strengths)];
     if !summary.inspection.is_empty() {
         blocks.extend([Block::heading(2, "What to inspect first"), Block::Table(stacks)]);
     }

@@ -121,14 +121,13 @@ pub fn document(answer: &Answer) -> Document {
     let summary = &answer.summary;
     let heading = |text: &str| Block::heading(2, text);
     let caption = format!(
-        "The room from above. The color of a stack shows what happens to it in the run that is shown \
-         ({}). Shades (barrels): share \
-         of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m. Racks are not \
-         drawn, but they count as obstacles in the table of aisles.",
+        "The room from above. The color of a stack shows what happens to it in the run that is shown ({}). The \
+         shades show the share of the variants in which fallen barrels cover the floor at the end, in cells of \
+         {CELL} m. Racks are not drawn, but they count as obstacles in the table of aisles.",
         shown_run(summary)
     );
     let mut blocks = vec![
-        heading("Where barrels end"),
+        heading("Where the barrels end up"),
         Block::Figure(Figure::new("plan", caption, picture(answer))),
     ];
     blocks.extend(players(answer));
@@ -231,9 +230,8 @@ fn aisles(summary: &CellarSummary) -> Table {
         format!(
             "Times are counted from the start of the shaking. Ranges cover 5 to 95 % of the variants in which the \
              event happens, or all of these variants if they are fewer than {FEW}; shares of variants are given with \
-             their 95 % intervals. A barrel is in the aisle \
-             when its center is above it. Area counts as covered if any body is above it, at any height; an aisle is \
-             blocked if no path 0.6 m wide leads through it."
+             their 95 % intervals. A barrel is in the aisle when its center is above it. Area counts as covered if \
+             any body is above it, at any height; an aisle is blocked if no path 0.6 m wide leads through it."
         ),
         &summary.aisles,
         &[
@@ -284,8 +282,8 @@ fn contacts(touched: &[&ShownStack]) -> Table {
         Cell::maybe(one.bodies.as_ref().map(|bodies| bodies[which].clone()))
     };
     Table::of(
-        "First contacts with another stack in the run that is shown. A stack is knocked over if the contact comes before \
-         its first loss of seat.",
+        "First contact of each stack with another stack in the run that is shown. A stack is knocked over if the \
+         contact comes before its first loss of seat.",
         touched,
         &[
             ("stack", "", &|one| Cell::text(&one.name)),

@@ -248,8 +248,8 @@ pub(crate) fn survival(shock: &ShockAnswer, of: u32) -> String {
     }
     let survive = shock.share_survive.unwrap_or(Mean { mean: 0.0, interval: [0.0, 1.0] });
     format!(
-        "if stacks stand before it, all of them survive in {}. On average, {:.1} stand before it, of which {:.1} fall \
-         by themselves and {:.1} are knocked over; {} survive; {fallen}",
+        "if stacks stand before it, all of them survive in {}. On average, {:.1} stand before it, of which {:.1} \
+         fall by themselves and {:.1} are knocked over; {} of them survive; {fallen}",
         survived(shock),
         shock.stood,
         shock.by_themselves,
@@ -306,8 +306,9 @@ pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
     if of == 1 {
         let shown = shock.shown.as_ref()?;
         let left = shown.stood - shown.by_themselves - shown.knocked_over;
+        let stand = if shown.stood == 1 { "stands" } else { "stand" };
         return Some(format!(
-            "Of {stacks} stacks, {} stand after the main shock and {left} after {strength}, in one run; shares can \
+            "Of {stacks} stacks, {} {stand} after the main shock and {left} after {strength}, in one run; shares can \
              be stated only for several variants.{cut}",
             shown.stood
         ));
@@ -409,18 +410,19 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     }
     if let Some(spread) = room.spread.filter(|_| plan.stacks > 1) {
         all.push(format!(
-            "For each stack that falls by itself, {spread:.1} stacks fall in total, including that stack."
+            "For each stack that falls by itself, {spread:.1} stacks fall in total, counting that stack."
         ));
     }
     if room.barrels_fallen.most > 0.0 {
         let [few, central, many] = room.wine_lost.map(liters);
         let [least, most] = room.cost.map(|dollars| measured(dollars, 0));
+        let fallen = span(&room.barrels_fallen, *of, 0, "");
+        let fall = if fallen.trim_end() == "1" { "falls" } else { "fall" };
         all.push(format!(
-            "Of {} barrels, {} fall. About {central} of {} of wine are lost ({few} if few of the fallen barrels \
-             burst, \
-             {many} if many do); burst barrels and wine are worth US${least} to US${most}.",
+            "Of {} barrels, {} {fall}. About {central} of {} of wine is lost ({few} if few of the fallen barrels \
+             burst, {many} if many do); the burst barrels and the wine are worth US${least} to US${most}.",
             plan.barrels,
-            span(&room.barrels_fallen, *of, 0, "").trim_end(),
+            fallen.trim_end(),
             liters(plan.wine),
         ));
     }
@@ -428,7 +430,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     for place in &summary.places {
         if let Some(count) = &place.leads_out {
             all.push(format!(
-                "A path 0.6 m wide from the place \"{}\" to a door is left in {}.",
+                "A path 0.6 m wide from the place \"{}\" to a door remains open in {}.",
                 place.name,
                 share(count, *of)
             ));
@@ -488,13 +490,13 @@ fn falls(summary: &CellarSummary) -> String {
     let (own, low, high) = of_shares(&room.share_by_themselves);
     let knocked = if room.knocked_over > 0.0 {
         let (knocked, low, high) = of_shares(&room.share_knocked_over);
-        format!(" and {:.1} are knocked over ({knocked}, {low} to {high})", room.knocked_over)
+        format!(", and {:.1} are knocked over ({knocked}, {low} to {high})", room.knocked_over)
     } else {
         ", and none is knocked over".to_owned()
     };
     format!(
-        "At least one stack falls in {}. On average {:.1} of {all} stacks{stood} fall by themselves ({own}, 95 % interval \
-         {low} to {high}){knocked}.",
+        "At least one stack falls in {}. On average, {:.1} of {all} stacks{stood} fall by themselves ({own}, 95 % \
+         interval {low} to {high}){knocked}.",
         share(&room.some_fall, *of),
         room.by_themselves,
     )

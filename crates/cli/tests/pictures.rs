@@ -111,6 +111,6 @@ fn a_report_on_paper_has_at_most_twelve_pages() {
         assert!((2..=12).contains(&pages), "{name} {changes:?}: {pages} pages");
         // What paper leaves out is on the page.
         let page = fs::read_to_string(out.join("report.html")).unwrap();
-        assert!(page.contains("): on the HTML page of this report."));
+        assert!(page.contains("): see the HTML page of this report."));
     }
 }

@@ -173,7 +173,7 @@ pub(crate) fn elsewhere(what: &str, [before, after]: [Counter; 2], language: Lan
     });
     let list = list.collect::<Vec<_>>().join(", ");
     let list = if list.is_empty() { list } else { format!(" ({list})") };
-    format!("{what}{list}: {}.", language.fixed("on the HTML page of this report"))
+    format!("{what}{list}: {}.", language.fixed("see the HTML page of this report"))
 }
 
 /// One piece of content. All text is plain text, which is escaped and never interpreted as markup.

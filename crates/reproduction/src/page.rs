@@ -59,7 +59,11 @@ pub(super) fn headline(rows: &[Comparison]) -> String {
     if count(Agreement::InBand) > 0 {
         let _ = write!(text, ", {} more within a wider band", count(Agreement::InBand));
     }
-    let _ = write!(text, ", {} differ", count(Agreement::Differs));
+    let differ = match count(Agreement::Differs) {
+        1 => "1 differs".to_owned(),
+        some => format!("{some} differ"),
+    };
+    let _ = write!(text, ", {differ}");
     text.push('.');
     text
 }
@@ -185,14 +189,14 @@ fn figure_6(results: &Results) -> Vec<Block> {
         "six-barrels",
         &format!("Animation of the same run: six barrels, μ rack–ground 0.4, under {under}."),
     ));
-    blocks.push(Block::heading(3, "(b) normal stress on barrel 1"));
+    blocks.push(Block::heading(3, "(b) line load on barrel 1 (normal stress in the paper)"));
     blocks.extend(figures::envelope(
         six,
         1,
         "figure-6b",
         &format!(
-            "Normal stress on barrel 1 (B1.1), per meter of boundary: at rest, and the largest until the \
-             first loss of seat, under {under}."
+            "Line load on barrel 1 (B1.1), that is, the normal force per meter of boundary: at rest, and the largest \
+             until the first loss of a seat, under {under}."
         ),
     ));
     blocks.push(Block::heading(3, "(c) horizontal displacement of barrels 1, 4 and 7"));
@@ -290,15 +294,15 @@ fn figure_7(results: &Results) -> Vec<Block> {
         "Full scale, sine with an amplitude of 4 in and a period of 0.76 √2 s, at the instants √2 t*.",
         moments,
     ));
-    blocks.push(Block::heading(3, "(c) normal stress on bodies 2 and 3"));
+    blocks.push(Block::heading(3, "(c) line load on bodies 2 and 3 (normal stress in the paper)"));
     for (number, what) in [(2, "barrel, body 2 (B1.2)"), (3, "rack, body 3 (R1)")] {
         blocks.extend(figures::envelope(
             full,
             number,
             &format!("figure-7c-body-{number}"),
             &format!(
-                "Normal stress on the {what}, per meter of boundary: at rest, and the largest until the \
-                 first loss of seat."
+                "Line load on the {what}, that is, the normal force per meter of boundary: at rest, and the largest \
+                 until the first loss of a seat."
             ),
         ));
     }

@@ -110,8 +110,8 @@ pub(super) fn block(found: &[Tried]) -> Block {
     let stress = |summary: &Summary| summary.demands.stress_amplification;
     let drift = |summary: &Summary| summary.demands.top_drift_ratio.map(|drift| 100.0 * drift);
     let table = Table::of(
-        "Other racks that also agree with the paper's text. Robust: number of combinations of contact parameters, each \
-         changed by 10 %, in which the mode stays the same.",
+        "Other racks that also agree with the paper's text. The column \"robust\" gives the number of combinations \
+         of contact parameters, each changed by 10 %, with which the mode stays the same.",
         found,
         &[
             ("rack", "", &|rack| Cell::text(rack.name)),

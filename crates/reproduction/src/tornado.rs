@@ -81,7 +81,7 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
 fn table(study: &Study) -> Table {
     let subject = study.subject;
     let caption = format!(
-        "The {} with one quantity changed at a time. Time: {}.",
+        "The {} with one quantity changed at a time. The time is that of the {}.",
         subject.name(),
         subject.clock()
     );

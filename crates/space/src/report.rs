@@ -138,9 +138,9 @@ pub fn document(answer: &Answer) -> Document {
 /// Returns the table of the numbers of the run that is shown.
 fn numbers(run: &Run, summary: &Summary) -> Block {
     let caption = if run.stack.is_free() {
-        "The run that is shown."
+        "Results of the run that is shown."
     } else {
-        "The run that is shown. Demands are the largest values until the first loss of seat."
+        "Results of the run that is shown. Demands are the largest values until the first loss of a seat."
     };
     let mut numbers = Table::new(caption, &[("", ""), ("", "")]);
     let row = |(a, b)| vec![Cell::text(a), Cell::text(b)];
@@ -173,7 +173,7 @@ fn of_variants(summary: &Summary) -> Vec<Block> {
     }
     let decides = summary.ensemble.as_ref().map(|spread| unknowns(&[("", spread)]));
     if let Some(decides) = decides.filter(|blocks| !blocks.is_empty()) {
-        blocks.push(heading("What decides"));
+        blocks.push(heading("What decides the outcome"));
         blocks.extend(decides);
     }
     if let Some(found) = &summary.remedy {
@@ -188,10 +188,10 @@ fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
-            "Ranges span the 5th to the 95th percentile of the variants. The direction of the first body is the one \
-             in which it left its seat. The direction of a barrel that fell{} leads from its position at rest to its \
-             position at the end of the variant.",
-            spread.counted("the first loss")
+            "Ranges span the 5th to the 95th percentile of the variants. The first body is the first that loses its \
+             seat; its direction is that in which it leaves the seat. The direction of a barrel that fell{} leads \
+             from its position at rest to its position at the end of the variant.",
+            spread.counted("the first loss of a seat")
         ),
         &[("", ""), ("in three dimensions", "")],
     );
@@ -204,14 +204,14 @@ fn variants(summary: &Summary) -> Option<Table> {
         let percent = barrelstack::variants::words::percent;
         let [low, high] = spread.interval.map(percent);
         row(
-            "share that collapses, with its 95 % interval",
+            "share of variants that collapse, with its 95 % interval",
             format!("{} ({low} to {high})", percent(share)),
         );
     }
     if let Some([low, high]) =
         spread.range.map(|range| range.map(barrelstack::variants::words::percent))
     {
-        row("range of the share over uncertain constants", format!("{low} to {high}"));
+        row("range of this share over the uncertain constants", format!("{low} to {high}"));
     }
     let range = |Range { p05, p95, .. }: Range, decimals: usize| {
         format!("{p05:.decimals$} to {p95:.decimals$}")
@@ -220,7 +220,13 @@ fn variants(summary: &Summary) -> Option<Table> {
         row("first loss of a seat", format!("{} s", range(loss, 1)));
     }
     if let Some(fall) = spread.first_fall {
-        row("first fall", format!("{} s{}", range(fall, 1), spread.counted("the first loss")));
+        let counted = spread.counted("the first loss of a seat");
+        let only = if counted.is_empty() {
+            String::new()
+        } else {
+            format!("; only falls{counted} are counted")
+        };
+        row("first fall", format!("{} s{only}", range(fall, 1)));
     }
     if let Some(fallen) = spread.barrels_fallen {
         row(
@@ -246,8 +252,14 @@ fn variants(summary: &Summary) -> Option<Table> {
                 away + near
             )
         };
-        row("first body", four([d.first_right, d.first_left, d.first_away, d.first_near]));
-        row("fallen barrels", four([d.debris_right, d.debris_left, d.debris_away, d.debris_near]));
+        row(
+            "direction of the first body",
+            four([d.first_right, d.first_left, d.first_away, d.first_near]),
+        );
+        row(
+            "directions of the fallen barrels",
+            four([d.debris_right, d.debris_left, d.debris_away, d.debris_near]),
+        );
     }
     if spread.cannot_stand > 0 {
         row(

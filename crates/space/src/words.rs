@@ -82,8 +82,8 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
         let [across, along] = directions.first();
         if across + along > 0 {
             sentences.push(format!(
-                "In the {} variants that fall, the first body leaves its seat across the barrels \
-                 in {across} and along the barrels in {along}.",
+                "The first seat is lost across the barrels in {across} of the {} variants that fall, and along the \
+                 barrels in {along}.",
                 across + along
             ));
         }

@@ -130,10 +130,10 @@ fn effect(sides: &[Side]) -> Option<String> {
                 return None;
             }
             let one = of().next()?;
-            let base = format!("{} of {all} variants with {}", one.collapsed()[0], first.name);
+            let base = format!("{} of {all} variants {}", one.collapsed()[0], having(first));
             let rest = of()
                 .zip(others)
-                .map(|(pair, other)| format!("{} with {}", pair.collapsed()[1], other.name));
+                .map(|(pair, other)| format!("{} {}", pair.collapsed()[1], having(other)));
             let counts = listed(std::iter::once(base).chain(rest));
             let none = of().all(|pair| pair.collapsed() == [0, 0]);
             // The other plane is named if any variant collapses in it.
@@ -152,13 +152,17 @@ fn effect(sides: &[Side]) -> Option<String> {
     let cause = match (levels(first) == levels(second), straps(first), straps(second)) {
         (true, false, true) => "With straps".to_owned(),
         (true, true, false) => "Without straps".to_owned(),
-        _ => format!("With {} instead of {}", second.name, first.name),
+        _ => {
+            let [own, its] = [second, first].map(|side| side.name.as_str());
+            let bare = |name| str::strip_prefix(name, "with ").unwrap_or(name);
+            format!("With {} instead of {}", bare(own), bare(its))
+        }
     };
     let clause = |(at, pair): (usize, &Paired)| {
         let ([from, to], of) = (pair.collapsed(), pair.pairs());
         let place = place(first, pair);
         let change = match to.cmp(&from) {
-            Ordering::Equal => "as before".to_owned(),
+            Ordering::Equal => "as many as before".to_owned(),
             Ordering::Less => format!("down from {from}"),
             Ordering::Greater => format!("up from {from}"),
         };
@@ -167,8 +171,9 @@ fn effect(sides: &[Side]) -> Option<String> {
         } else {
             " (too few variants to prove a difference)"
         };
-        let collapse = if at == 0 { " variants collapse" } else { "" };
-        format!("{to} of {of}{collapse}{place}, {change}{unproven}")
+        let noun = if at == 0 { " variants" } else { "" };
+        let collapse = if to == 1 { "collapses" } else { "collapse" };
+        format!("{to} of {of}{noun} {collapse}{place}, {change}{unproven}")
     };
     // The other plane is named if any variant collapses in it.
     let named =
@@ -199,28 +204,36 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             };
             let (change, [low, high]) = (points(pair.reduction.abs()), [low, high].map(points));
             let difference = if change < 1.0 {
-                "the shares differ by less than one percentage point".to_owned()
+                "The shares that collapse differ by less than one percentage point".to_owned()
             } else {
-                format!("the share of {second} is {change} percentage points {word}")
+                format!("The share that collapses is {change} percentage points {word} in {second}")
             };
             let motions = if one_motion([first, other]) {
-                " under the same motions"
+                "under the same motions"
             } else {
-                " under different motions"
+                "under different motions"
             };
             let lost = match pair.without_verdict {
                 0 => String::new(),
+                1 => " In 1 further variant, one of the two runs has no verdict.".to_owned(),
                 some => format!(" In {some} further variants, one of the two runs has no verdict."),
             };
-            let clear = if pair.is_clear() { "" } else { ", so no difference is proven" };
+            let clear = if pair.is_clear() { "" } else { ": no difference is proven" };
+            let both = match pair.both {
+                0 => "none collapses".to_owned(),
+                1 => "1 collapses".to_owned(),
+                some => format!("{some} collapse"),
+            };
+            let signed = |points: f64| points.to_string().replace('-', "−");
             format!(
-                "Of the same {} variants{motions}{}, {} collapse in both runs, {} in A only and {} in \
-                 {second} only: {difference} (95 % interval {low} to {high} points{clear}).{lost}",
+                "Of {} variants that were run both in A and in {second}, {motions}{}, {both} in both, {} in A \
+                 only and {} in {second} only. {difference} (95 % interval {} to {} points){clear}.{lost}",
                 pair.pairs(),
                 place(first, pair),
-                pair.both,
                 pair.only_first,
                 pair.only_second,
+                signed(low),
+                signed(high),
             )
         };
         Paired::of(first, other).iter().map(sentence).collect::<Vec<_>>()
@@ -262,7 +275,7 @@ fn headline(sides: &[Side]) -> String {
             }
         }
         ([up], [down]) if one_height && !straps(up) && straps(down) => {
-            format!("Straps bring the stack down: the stack stands with {}.", up.name)
+            "Straps bring the stack down: it stands without them.".to_owned()
         }
         ([], _) => format!("{} fall: {}.", capital(&all), names(&down)),
         (_, []) => format!("{} stand: {}.", capital(&all), names(&up)),
@@ -284,18 +297,27 @@ fn cut_short(sides: &[Side]) -> String {
         .to_owned()
 }
 
+/// Returns words for what a run has, to follow a noun: "with five levels", or "without straps" for a run of that name.
+fn having(side: &Side) -> String {
+    let is_said = ["with ", "without "].iter().any(|word| side.name.starts_with(word));
+    if is_said { side.name.clone() } else { format!("with {}", side.name) }
+}
+
 /// Describes the runs whose variants fall under their own weight, before they are shaken.
 fn by_themselves(sides: &[Side]) -> String {
     let fallen = |side: &Side| {
         let worst = spreads(side).max_by_key(|spread| spread.cannot_stand)?;
         let (some, all) = (worst.cannot_stand, worst.run());
-        (some > 0).then(|| format!("{some} of {all} variants with {}", side.name))
+        (some > 0).then(|| (some, format!("{some} of {all} variants {}", having(side))))
     };
-    let all: Vec<String> = sides.iter().filter_map(fallen).collect();
-    if all.is_empty() {
-        return String::new();
-    }
-    capital(&format!("{} fall under their own weight, before they are shaken. ", listed(all)))
+    let all: Vec<(u32, String)> = sides.iter().filter_map(fallen).collect();
+    let (fall, they) = match all.as_slice() {
+        [] => return String::new(),
+        [(1, _)] => ("falls under its", "it is"),
+        _ => ("fall under their", "they are"),
+    };
+    let names = listed(all.into_iter().map(|(_, name)| name));
+    capital(&format!("{names} {fall} own weight, before {they} shaken. "))
 }
 
 /// Describes the result of a run: the share of collapses with its interval and, if the stack
@@ -306,11 +328,12 @@ fn describe(at: usize, side: &Side) -> String {
     let shown = side.summary.ensemble() == Some(spread);
     let view = if shown { side.view } else { side.other.as_ref().map(|other| other.view) };
     let shaken = view.filter(|_| side.other.is_some());
-    let shaken = shaken.map_or_else(String::new, |view| format!("shaken {}, it ", view.words()));
+    let shaken = shaken.map_or_else(String::new, |view| format!("shaken {}, ", view.words()));
     let [low, high] = spread.interval.map(words::percent);
     let Spread { collapsed, variants, .. } = spread;
     let result = format!(
-        "{name}: {shaken}falls in {collapsed} of {variants} variants ({low} to {high} of all such stacks)"
+        "{name}: {shaken}the stack falls in {collapsed} of {variants} variants (95 % interval of the share: {low} to \
+         {high})"
     );
     let drift = side.summary.demands().top_drift_ratio.filter(|_| stands(side));
     match drift {
@@ -346,7 +369,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
     let view = sides[0].view;
     if let Some(view) = view.filter(|_| sides.iter().any(|side| side.other.is_some())) {
         sentences.push(format!(
-            "The runs are shown {}; the table of outcomes covers both planes.",
+            "The pictures show the plane {}; the table of outcomes covers both planes.",
             view.words()
         ));
     }
@@ -355,16 +378,17 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
             let shown = sides[0].summary.variant();
             let one = sides.iter().all(|side| side.summary.variant() == shown);
             match shown {
-                0 if one => "Each run is shown as stated.".to_owned(),
+                0 if one => "For every run, the page shows the stack as stated.".to_owned(),
                 _ if one => format!(
-                    "Each run is shown in variant {shown}, the most typical variant of all runs taken together{}.",
+                    "For every run, the page shows variant {shown}, the most typical variant of all runs taken \
+                     together{}.",
                     match (one_motion(sides), sides.iter().any(Side::is_spatial)) {
                         (true, true) => ", under the same motion",
                         (true, false) => ", under the same component of the motion",
                         (false, _) => "",
                     }
                 ),
-                _ => "Each run is shown in its own most typical variant.".to_owned(),
+                _ => "For every run, the page shows the most typical variant of that run.".to_owned(),
             }
         }
     } else {

@@ -6,7 +6,7 @@ use super::{Difference, Side, letter};
 use crate::demand::DEMANDS;
 use crate::report;
 use crate::variants::Spread;
-use crate::variants::words::{course, percent};
+use crate::variants::words::{course, course_in_plane, percent};
 
 /// Creates an empty table: the `first` columns, one column per run, then the `last` columns.
 fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &str)]) -> Table {
@@ -19,7 +19,10 @@ fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &
 
 /// Tabulates the inputs that differ between runs; `names` are the names of the runs.
 pub fn inputs(names: &[String], differing: &[Difference]) -> Table {
-    let mut table = Table::new("Inputs that differ. All other inputs are equal.", &[("input", "")]);
+    let mut table = Table::new(
+        "Inputs that differ between the runs. All other inputs are equal.",
+        &[("input", "")],
+    );
     table.columns.extend(names.iter().map(|name| Column::new(name, "")));
     table.columns.push(Column::new("meaning", ""));
     for one in differing {
@@ -44,7 +47,7 @@ pub(super) fn common(sides: &[Side], differing: &[Difference]) -> Table {
 
 /// Tabulates the outcome of each run.
 pub(super) fn outcomes(sides: &[Side]) -> Table {
-    let mut table = table("Outcomes.", &[("", "")], sides, &[]);
+    let mut table = table("Outcome of each run.", &[("", "")], sides, &[]);
     let mut row = |name: &str, cell: &dyn Fn(&Side) -> Cell| {
         let mut row = vec![Cell::text(name)];
         row.extend(sides.iter().map(cell));
@@ -64,9 +67,10 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
         });
         row("first loss of a seat, and barrels fallen, in the variants that collapse", &|side| {
             let spread = side.summary.ensemble().filter(|spread| spread.collapsed > 0);
+            let course = if side.other.is_some() { course_in_plane } else { course };
             Cell::maybe(spread.map(course))
         });
-        row("shown", &|side| match side.summary.variant() {
+        row("run that is shown", &|side| match side.summary.variant() {
             0 => Cell::text("as stated"),
             number => Cell::text(format!("variant {number}")),
         });
@@ -83,13 +87,14 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
         });
     }
     row("mode", &|side| Cell::maybe(side.summary.outcome().mode));
-    row("gives way", &|side| seconds(side.summary.outcome().time));
-    row("first body", &|side| Cell::maybe(side.summary.outcome().first.as_ref()));
-    row("first fall", &|side| seconds(side.summary.outcome().first_fall));
+    row("gives way after", &|side| seconds(side.summary.outcome().time));
+    row("first body to lose its seat", &|side| Cell::maybe(side.summary.outcome().first.as_ref()));
+    row("first fall of a barrel", &|side| seconds(side.summary.outcome().first_fall));
     row("barrels fallen", &|side| {
         let outcome = side.summary.outcome();
+        let place = if side.other.is_some() { " in this plane" } else { "" };
         let fallen = outcome.barrels_fallen;
-        Cell::maybe(fallen.map(|fallen| format!("{fallen} of {}", outcome.barrels)))
+        Cell::maybe(fallen.map(|fallen| format!("{fallen} of {}{place}", outcome.barrels)))
     });
     row("end of the run", &|side| seconds(Some(side.end_time)));
     table

@@ -170,7 +170,7 @@ fn tint(run: &Run) -> Tint {
     };
     let frames = run.recording.frames.stresses.iter();
     Tint {
-        label: "contact stress".into(),
+        label: "contact line load".into(),
         unit: "kN/m".into(),
         values: frames.map(|frame| parts.iter().zip(frame).map(of).collect()).collect(),
     }

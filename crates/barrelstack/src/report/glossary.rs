@@ -24,7 +24,8 @@ pub const WORDS: &[Word] = &[
     word("pretension", "the force to which a strap is tightened when it is installed"),
     word(
         "stress amplification",
-        "the largest contact stress until the first loss of seat, divided by the largest contact stress at rest",
+        "the largest line load (normal force at a contact per meter of boundary) until the first loss of a seat, \
+         divided by the largest line load at rest",
     ),
     word("PGA", "peak ground acceleration: the largest acceleration of the ground"),
     word("PGV", "peak ground velocity: the largest speed of the ground"),

@@ -92,6 +92,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     if planes.is_empty() {
         return Vec::new();
     }
+    let noun = if planes.len() > 1 { "barrels in this plane" } else { "barrels" };
     let mut table = Table::new(
         "Ranges span the 5th to the 95th percentile of the variants; the range of all variants is in parentheses.",
         &[("", "")],
@@ -108,11 +109,11 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     };
     row("variants with a verdict", &|spread| Some(spread.variants.to_string()));
     row("variants that collapse", &|spread| Some(spread.collapsed.to_string()));
-    row("share that collapses, with its 95 % interval", &|spread| {
+    row("share of variants that collapse, with its 95 % interval", &|spread| {
         let [low, high] = spread.interval.map(percent);
         spread.share.map(|share| format!("{} ({low} to {high})", percent(share)))
     });
-    row("range of the share over uncertain constants", &|spread| {
+    row("range of this share over the uncertain constants", &|spread| {
         let [low, high] = spread.range?.map(percent);
         Some(format!("{low} to {high}"))
     });
@@ -124,13 +125,17 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     row("first fall", &|spread| {
         spread.first_fall.map(|Range { p05, p95, least, most, .. }| {
             let time = format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1));
-            let counted = spread.counted("the first loss");
-            if counted.is_empty() { time } else { format!("{time}; falls are counted{counted}") }
+            let counted = spread.counted("the first loss of a seat");
+            if counted.is_empty() {
+                time
+            } else {
+                format!("{time}; only falls{counted} are counted")
+            }
         })
     });
     row("barrels fallen in a collapse", &|spread| {
         spread.barrels_fallen.map(|Range { p05, p95, least, most, .. }| {
-            let fallen = format!("{} of {} barrels fall", span(p05, p95, 0), spread.barrels);
+            let fallen = format!("{} of {} {noun} fall", span(p05, p95, 0), spread.barrels);
             let counted = spread.counted("the first loss of a seat");
             format!("{fallen}{counted} (all variants: {})", span(least, most, 0))
         })
@@ -152,7 +157,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     let mut blocks = vec![Block::Table(table)];
     blocks.extend(planes.iter().find_map(|(_, spread)| spread.reason.as_ref()).map(|reason| {
         Block::Paragraph(format!(
-            "First variant that falls before it is shaken, or has no verdict: {reason}."
+            "The first variant that falls before it is shaken, or that has no verdict, gives this reason: {reason}."
         ))
     }));
     blocks

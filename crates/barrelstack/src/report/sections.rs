@@ -34,7 +34,7 @@ pub(super) fn all(
     section(&mut blocks, 2, "What would have kept the stack up", remedy);
     let placed: Vec<(&str, &Spread)> =
         spreads.iter().map(|(view, spread)| (view.words(), *spread)).collect();
-    section(&mut blocks, 2, "What decides", unknowns(&placed));
+    section(&mut blocks, 2, "What decides the outcome", unknowns(&placed));
     section(&mut blocks, 2, "Results of all variants", planes::variants(summary));
     section(&mut blocks, 2, "Collapse sequence", sequence(run, scene));
     let trusted = summary.verification.as_ref().map(trust).unwrap_or_default();
@@ -46,7 +46,7 @@ pub(super) fn all(
 /// Builds the section for engineers: the results of each plane, and the inputs that both planes share. Its parts are
 /// hidden until the reader expands them.
 fn for_engineers(own: (&Run, &Summary, Option<&Variants>), other: Option<&Shown>) -> Vec<Block> {
-    const PARTS: &str = "odies, demands, stresses, forces, motion, energies";
+    const PARTS: &str = "odies, demands, line loads, forces, motion, energies";
     let Some(other) = other else {
         let blocks = engineering(own).into_iter().chain(given(own.0)).collect();
         return vec![Block::details(format!("B{PARTS}, inputs and limits"), blocks)];
@@ -97,7 +97,7 @@ fn engineering((run, summary, variants): (&Run, &Summary, Option<&Variants>)) ->
     let table = demand_table(&summary.demands, &summary.demands_whole_run);
     let shown = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
     section(&mut blocks, 3, "Demands", shown);
-    on_screen(&mut blocks, "Normal stress on barrels and racks", stresses(run));
+    on_screen(&mut blocks, "Line loads on barrels and racks", stresses(run));
     on_screen(&mut blocks, "Forces between bodies", forces(run, summary));
     for one in &summary.devices.0 {
         section(&mut blocks, 3, &capital(one.words.many), device_table(one));
@@ -169,12 +169,12 @@ fn sequence(run: &Run, scene: &Arc<Scene>) -> Vec<Block> {
 
 fn fates(summary: &Summary) -> Table {
     Table::of(
-        "Largest slip: relative to the support of the body, while the stack stood. At the end: displacement \
-         relative to the ground, from the position at rest.",
+        "The largest slip is relative to the support of the body, while the stack stood. The displacement at the end \
+         is relative to the ground, from the position at rest.",
         &summary.bodies,
         &[
             ("body", "", &|body| Cell::text(&body.name)),
-            ("left seat", "s", &|body| Cell::measured(body.left_seat_at, 2)),
+            ("left its seat", "s", &|body| Cell::measured(body.left_seat_at, 2)),
             ("fell", "s", &|body| Cell::measured(body.fell_at, 2)),
             ("fall height", "m", &|body| Cell::measured(body.fall_height, 2)),
             ("largest slip", "cm", &|body| Cell::Measured(100.0 * body.peak_slip, 1)),
@@ -235,7 +235,8 @@ fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
     let band = variants.map(|variants| band(run, variants)).unwrap_or_default();
     let mut caption = "Horizontal displacement relative to the ground.".to_owned();
     if !band.is_empty() {
-        caption += " 90 % of all variants lie between the thin lines; a variant that has ended counts with its last value.";
+        caption += " At every time, the displacements in 90 % of all variants lie between the thin lines; a variant \
+                    that has ended counts with its last displacement.";
     }
     series.extend(band);
     let axis = Axis { range, ..Axis::new("displacement", "cm") };
@@ -270,7 +271,7 @@ fn band(run: &Run, variants: &Variants) -> Vec<Series> {
         .collect();
     let line = |percent: u32, value: fn(&Range) -> f64| {
         let values = ranges.iter().map(|range| range.as_ref().map_or(f64::NAN, value)).collect();
-        let label = format!("{name}: {percent} % of all variants are below");
+        let label = format!("{name}: {percent} % of all variants are below this line");
         let mut series = Series::new(label, times.clone(), values);
         series.style.muted = true;
         series
@@ -292,8 +293,11 @@ fn stresses(run: &Run) -> Vec<Block> {
         blocks.insert(
             0,
             Block::Paragraph(
-                "Stress is the contact force per meter of boundary in the plane of the model, drawn outward from the \
-                 point at which it acts. The stress is the force divided by the length of boundary on which a contact is assumed to bear: at a node, half of the distance to each neighboring node; at a contact without nodes, 1 cm at full scale. Gray area: stress at rest. Area behind the gray area: largest stress until the first loss of seat."
+                "The line load is the normal force at a contact per meter of boundary, in the plane of the model; it \
+                 is drawn outward from the point at which it acts. It is the force divided by the length of boundary \
+                 on which a contact is assumed to bear: at a node, half of the distance to each neighboring node; at \
+                 a contact without nodes, 1 cm at full scale. The gray area shows the line load at rest. The area \
+                 behind the gray area shows the largest line load until the first loss of a seat."
                     .into(),
             ),
         );
@@ -348,7 +352,8 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
         amplification: envelope.amplification(),
         coordinate: (coordinate.into(), unit.into()),
     };
-    let caption = format!("Normal stress on {name}, at rest and at its maximum.");
+    let caption =
+        format!("Line load on {name}: at rest, and the largest until the first loss of a seat.");
     Figure::new(format!("stress-{name}"), caption, picture)
 }
 

@@ -128,20 +128,23 @@ fn spectrum(motion: &GroundMotion, rocking: Option<&Rocking>) -> Option<Figure> 
                 label: format!("rigid block at {}", centimeters(reached)),
             });
             caption.push_str(
-                " Dashed: the period of a rigid block with the shape of the stack, at the largest drift \
-                 that the stack reached.",
+                " A dashed line marks the rocking period of a rigid block with the shape of the stack, at the \
+                 largest drift of the stack.",
             );
         }
         match (&rocking.drift.swings[..], rocking.widest()) {
             ([one], _) => {
                 let label = format!("stack at {}", centimeters(one.amplitude));
                 plot.marks.push(Mark { at: one.period, label });
-                caption.push_str(" Also dashed: the period of the only swing of the stack.");
+                caption.push_str(
+                    " A dashed line also marks the period of the only swing of the stack.",
+                );
             }
             (_, Some(_)) => {
                 let (from, to) = rocking.range();
                 plot.bands.push(Band { from, to, label: "swings of the stack".into() });
-                caption.push_str(" Shaded: the periods of the swings of the stack.");
+                caption
+                    .push_str(" The periods of the swings of the stack lie in the shaded range.");
             }
             (_, None) => {}
         }
@@ -172,6 +175,8 @@ fn periods(rocking: &Rocking) -> Figure {
         interactive: true,
         ..Plot::default()
     };
-    let caption = "Rocking period as a function of the amplitude at the top: of a rigid block with the mass and the foot width of the stack, and of the swings of the stack while it stood. The period of a swing is twice the time between two zero crossings of the drift.";
+    let caption = "Rocking period as a function of the amplitude at the top, for a rigid block with the mass and the \
+                   foot width of the stack, and for the swings of the stack while it stood. The period of a swing is \
+                   twice the time between two zero crossings of the drift.";
     Figure::new("periods", caption, plot)
 }

@@ -37,7 +37,14 @@ fn table(place: &str, spread: &Spread) -> Table {
     let share = |one: &Unknown, place| Cell::maybe(at(one, place).map(|at| percent(at.share)));
     Table::of(
         format!(
-            "{shaken}{} to {} of stacks collapse, depending on the uncertain constants of the seats; {stated} collapse with all of these constants at their medians. Each constant is given at its 5 % fractile, median and 95 % fractile, with the share of collapses averaged over the other constants. Change: 95 % interval of the difference between the largest and the smallest share as the constant varies. Variance: fraction of the variance of the share that would remain if all other constants were known. Range left: average width of the range that would remain if the constant were measured exactly.",
+            "{shaken}{} to {} of stacks collapse, depending on the uncertain constants of the seats; {stated} \
+             collapse with all of these constants at their medians. For each constant, the table gives the 5 % \
+             fractile, the median and the 95 % fractile, and for each of these values the share of stacks that \
+             collapse, averaged over the other constants. The column “change” gives the 95 % interval of the \
+             difference between the largest and the smallest share as the constant varies. The column “variance” \
+             gives the fraction of the variance of the share that would remain if all other constants were known. \
+             The column “range left” gives the average width of the range of shares that would remain if the \
+             constant were measured exactly.",
             range[0], range[1]
         ),
         &spread.decides,

@@ -17,17 +17,19 @@ use crate::verify::Verification;
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     let spreads = summary.spreads();
     if spreads.is_empty() {
-        return single(run, summary, run.assembly.view);
+        let noun = if summary.other_plane.is_some() { "barrels in this plane" } else { "barrels" };
+        return single(run, summary, run.assembly.view, noun);
     }
     variants::words::headline(&spreads)
 }
 
-/// Describes the result of the shown run in one sentence, without naming the plane.
+/// Describes the result of the shown run of one of two planes in one sentence, without naming the plane.
 pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
-    single(run, summary, None)
+    single(run, summary, None, "barrels in this plane")
 }
 
-fn single(run: &Run, summary: &Summary, plane: Option<View>) -> String {
+/// Describes the result of a run; `noun` is the word for its barrels.
+fn single(run: &Run, summary: &Summary, plane: Option<View>, noun: &str) -> String {
     let shaken = |result: &str| match plane {
         Some(plane) => format!("Shaken {}, {result}", plane.words()),
         None => capital(result),
@@ -69,9 +71,9 @@ fn single(run: &Run, summary: &Summary, plane: Option<View>) -> String {
             }
             let who = match fallen {
                 1 if barrels == 1 => "the barrel falls".to_owned(),
-                1 => format!("one of {barrels} barrels falls"),
-                _ if fallen == barrels => format!("all {barrels} barrels fall"),
-                _ => format!("{fallen} of {barrels} barrels fall"),
+                1 => format!("one of {barrels} {noun} falls"),
+                _ if fallen == barrels => format!("all {barrels} {noun} fall"),
+                _ => format!("{fallen} of {barrels} {noun} fall"),
             };
             shaken(&format!("{who}: the stack gives way after {time:.1} s."))
         }
@@ -108,7 +110,7 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
     let barrel = run.assembly.parts.iter().any(|p| p.name == first && p.kind == PartKind::Barrel);
     match mode {
         CollapseMode::Ejection if barrel => format!(
-            "Barrel {first} is the first of {part} to lose its seat: it is thrown out of its cradle."
+            "Barrel {first} is the first barrel of {part} to lose its seat: it is thrown out of its cradle."
         ),
         CollapseMode::Ejection => {
             format!("The barrels of {part} are thrown off the stack with their rack, {first}.")

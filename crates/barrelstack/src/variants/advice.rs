@@ -23,7 +23,7 @@ impl Remedy {
                 )
             }
             (Some(height), Some(straps)) => format!(
-                "{} would have stood in {}, {} in {}",
+                "{} would have stood in {}, and {} in {}",
                 name(height),
                 share(height),
                 name(straps),
@@ -73,9 +73,13 @@ impl Remedy {
         };
         let said = match (&self.height, &self.straps) {
             (Some(height), Some(straps)) => match (range(height), range(straps)) {
-                (Some(one), Some(other)) if one == other => format!("{one} of either"),
+                (Some(one), Some(other)) if one == other => {
+                    format!("{one} of stacks with either change")
+                }
                 (Some(one), Some(other)) => {
-                    format!("{one} of the former and {other} of the latter")
+                    format!(
+                        "{one} of stacks with the first change and {other} of stacks with the second"
+                    )
                 }
                 _ => return String::new(),
             },
@@ -92,7 +96,7 @@ impl Remedy {
                 share => (height, straps, share),
             };
             format!(
-                "; fewer fall with {} than with {} in {} of the draws of these constants",
+                "; fewer stacks fall with {} than with {} in {} of the random draws of these constants",
                 name(better),
                 name(worse),
                 percent(share)
@@ -110,9 +114,13 @@ impl Remedy {
         let at_most = |one: &Tried| one.interval.map(|[_, high]| percent(high));
         let most = match (&self.height, &self.straps) {
             (Some(height), Some(straps)) => match (at_most(height), at_most(straps)) {
-                (Some(height), Some(straps)) if height == straps => format!("{height} of either"),
+                (Some(height), Some(straps)) if height == straps => {
+                    format!("{height} of stacks with either change")
+                }
                 (Some(height), Some(straps)) => {
-                    format!("{height} of the former and {straps} of the latter")
+                    format!(
+                        "{height} of stacks with the first change and {straps} of stacks with the second"
+                    )
                 }
                 _ => return String::new(),
             },
@@ -149,7 +157,7 @@ impl Remedy {
         let counted = |one: &Tried| percent(f64::from(one.failed) / f64::from(one.variants.max(1)));
         let rows = || self.tried.iter().enumerate();
         let intervals = rows().filter_map(|(row, one)| Some((row, one.interval?.map(percent))));
-        let bars = Series::bars("95 % interval, for all changes at once", intervals);
+        let bars = Series::bars("95 % intervals that hold for all changes at once", intervals);
         let points = |label: &str, index: usize, known: bool| {
             let shown = rows().filter(|(_, one)| one.share.is_some() == known);
             let (x, y) = shown.map(|(row, one)| (counted(one), Axis::row(row))).unzip();
@@ -165,7 +173,8 @@ impl Remedy {
         let limit = mark(1.0 - self.required_share, "limit");
         Figure::new(
             "remedy",
-            "Share of the variants that fall after each change, for the direction of shaking in which more fall. All changes are tried with the same variants.",
+            "Share of the variants that fall with each change, for the direction of shaking in which more of them \
+             fall. All changes were tried with the same variants.",
             Plot {
                 x: Axis { range: Some([-2.0, 102.0]), ..Axis::new("variants that fall", "%") },
                 y: Axis::named(self.tried.iter().map(name).collect()),
@@ -182,9 +191,15 @@ impl Remedy {
         let [stand, tried] =
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
-            "Changes that were tried, with the same variants. A change suffices if at least {:.0} % of the variants stand{stand}. A change is rejected at the end of a block of variants once too many variants have failed, so the share that falls after a rejected change is not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes that may be tried{tried}. \
-             The range over the uncertain constants contains 95 % of the shares if friction, stiffness and damping of the seats are drawn from their distributions, sampling error included. The last column is the share of draws of the uncertain constants in which fewer stacks fall after the change than without it; each draw applies to all changes. \
-             Straps are assumed not to slip on the barrels and racks that they tie.",
+            "Changes that were tried, all of them with the same variants. A change suffices if at least {:.0} % of \
+             the variants stand{stand}. The variants are run in blocks, and a change is rejected after the first \
+             block at whose end too many variants have fallen; the share of stacks that fall with a rejected change \
+             is therefore not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes \
+             that may be tried{tried}. If friction, stiffness and damping of the seats are drawn from their \
+             distributions, the range over the uncertain constants contains the share of stacks that fall with a \
+             probability of 95 %; it includes the sampling error. The last column gives the share of random draws of \
+             the uncertain constants in which fewer stacks fall with the change than without it; each draw applies \
+             to all changes. Straps are assumed not to slip on the barrels and racks that they tie.",
             100.0 * self.required_share,
             self.candidates
         );
@@ -199,16 +214,16 @@ impl Remedy {
             &[
                 ("change", "", &|one| Cell::text(name(one))),
                 ("fall", "", &|one| Cell::text(falls(one))),
-                ("share that falls, with its 95 % interval", "", &|one| {
+                ("share of stacks that fall, with its 95 % interval", "", &|one| {
                     Cell::maybe(one.share.zip(one.interval).map(|(share, interval)| {
                         format!("{} ({})", percent(share), interval.map(percent).join(" to "))
                     }))
                 }),
                 ("suffices", "", &|one| Cell::text(verdict(one))),
-                ("range over uncertain constants", "", &|one| {
+                ("range over the uncertain constants", "", &|one| {
                     Cell::maybe(one.range.map(|range| range.map(percent).join(" to ")))
                 }),
-                ("draws in which fewer fall than without the change", "", &|one| {
+                ("draws in which fewer stacks fall than without the change", "", &|one| {
                     Cell::maybe(one.better_than_as_it_is.map(percent))
                 }),
             ],

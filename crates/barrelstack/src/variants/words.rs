@@ -224,7 +224,11 @@ pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
         worst(&placed).and_then(|(_, spread)| measure(spread)).into_iter().collect();
     let falls = planes.iter().filter(|(_, spread)| spread.collapsed > 0);
     let sentence = |(view, spread): &(View, &Spread)| {
-        format!("In the variants in which the stack falls {}, {}.", view.words(), course(spread))
+        format!(
+            "In the variants in which the stack falls {}, {}.",
+            view.words(),
+            course_in_plane(spread)
+        )
     };
     sentences.extend(falls.filter(|_| planes.len() > 1).map(sentence));
     sentences
@@ -261,11 +265,11 @@ pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
         _ => "has no verdict".to_owned(),
     };
     let places = format!(
-        "in position by up to {} mm and in mass by {} % (one standard deviation)",
+        "in the positions of the bodies (by up to {} mm) and in their masses (with a standard deviation of {} %)",
         tenths(1e3 * imperfections.placement),
         tenths(100.0 * imperfections.mass)
     );
-    let constants = "in friction and contact constants within their uncertainty";
+    let constants = "in the friction and contact constants (drawn within their uncertainty)";
     let differ = match (imperfections.drawn, unknowns.drawn) {
         (true, false) => format!("differ from it {places}"),
         (false, true) => format!("differ from it {constants}"),
@@ -300,6 +304,15 @@ pub fn fate(spread: &Spread) -> String {
 /// Describes the time and the extent of the fall, such as "the first seat is lost between 5.6 and
 /// 6.4 s; 4 to 8 of 10 barrels fall".
 pub fn course(spread: &Spread) -> String {
+    course_of("barrels", spread)
+}
+
+/// Like [`course`], for a stack that was simulated in both planes: its barrels are those in the plane.
+pub(crate) fn course_in_plane(spread: &Spread) -> String {
+    course_of("barrels in this plane", spread)
+}
+
+fn course_of(noun: &str, spread: &Spread) -> String {
     if spread.collapsed == spread.cannot_stand {
         return "the stack falls before it is shaken".to_owned();
     }
@@ -316,22 +329,22 @@ pub fn course(spread: &Spread) -> String {
         (Some(_), Some(fallen)) => {
             let range = fallen.stated(spread.collapsed);
             let fall = if range[1] < 1.5 && range[0] > 0.5 { "falls" } else { "fall" };
-            format!("{} {fall}", barrels(range, spread.barrels))
+            format!("{} {fall}", barrels(range, spread.barrels, noun))
         }
         _ => "no barrel falls".to_owned(),
     };
     format!("{when}{fallen}{}", spread.counted("that"))
 }
 
-/// Describes the number of fallen barrels, such as "4 to 8 of 10 barrels".
-fn barrels(fallen: [f64; 2], all: usize) -> String {
+/// Describes the number of fallen barrels, such as "4 to 8 of 10 barrels"; `noun` is the word for the barrels.
+fn barrels(fallen: [f64; 2], all: usize, noun: &str) -> String {
     let [from, to] = fallen.map(|count| format!("{count:.0}"));
     if from != to {
-        format!("{from} to {to} of {all} barrels")
+        format!("{from} to {to} of {all} {noun}")
     } else if to == all.to_string() {
-        format!("all {all} barrels")
+        format!("all {all} {noun}")
     } else {
-        format!("{to} of {all} barrels")
+        format!("{to} of {all} {noun}")
     }
 }
 
@@ -618,8 +631,7 @@ mod tests {
         let decides = "the stiffness of seats decides the outcome: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.";
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
-        let left = "After the measurement, the range is on average 55 percentage points wide \
-             instead of 83.";
+        let left = "After the measurement, this range is on average 55 percentage points wide instead of 83.";
         assert!(measured.contains("read how far it sinks. ") && measured.ends_with(left));
         // A constant whose effect may be zero does not decide; nor does one whose effect is certain but small.
         one.decides = vec![unknown([-0.1, 0.6])];

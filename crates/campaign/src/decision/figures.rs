@@ -70,8 +70,8 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
     let dots = raw(curve, measure.scale, "raw fractions with 95 % intervals", 1);
     let series = line.into_iter().chain([dots]).collect();
     let caption = format!(
-        "Chance of {} against {}. Dots: the share of cases that fail at each level or in each bin, not smoothed, \
-         with Wilson's interval.{}",
+        "Chance of the limit state \"{}\" as a function of {}. Dots: the share of cases that fail at each level or \
+         in each bin, not smoothed, with Wilson's interval.{}",
         curve.limit.words(),
         measure.label,
         if curve.fit.is_ok() {
@@ -190,8 +190,8 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     Some(Figure::new(
         "ida",
         format!(
-            "Incremental dynamic analysis: peak drift of the top while the stack stands, against {}. A line reaches \
-             the right edge at the level at which the stack collapses.{note}",
+            "Incremental dynamic analysis: {} as a function of the peak drift of the top while the stack stands. A \
+             line reaches the right edge at the level at which the stack collapses.{note}",
             measure.label
         ),
         Plot {
@@ -213,8 +213,8 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     let series = vec![Series::bars("lowest to highest share of collapse", bars)];
     Figure::new(
         "tornado",
-        "Effect of the varied quantities: the share of cases that collapse at the least and at the most favorable \
-         value of each quantity, over all motions and levels; if a quantity has many values, they are grouped into \
+        "Effect of each varied quantity: the share of cases that collapse at its least favorable value and at its \
+         most favorable value, over all motions and levels. If a quantity has many values, they are grouped into \
          thirds. The vertical line marks the share for all cases together.",
         Plot {
             x: Axis { range: Some([0.0, 1.0]), ..Axis::new("share of collapse", "") },

@@ -124,7 +124,10 @@ pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
         Cell::maybe(fit.map(|fit| percent(fit.curve.probability(of.intensity))))
     };
     Table::of(
-        format!("Raw counts of {}, and the fitted curve.", curve.limit.words()),
+        format!(
+            "Cases that reach the limit state \"{}\": raw counts, and the fitted curve.",
+            curve.limit.words()
+        ),
         curve.stripes.iter().zip(&curve.intervals),
         &[
             (&measure.label, measure.shown_unit, &|(of, _)| measure.cell(of.intensity)),
@@ -155,8 +158,8 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
         }
         Ok([median, dispersion]) => {
             said.push(format!(
-                "The curve is the lognormal curve of maximum likelihood (Baker 2015); standard errors: {} of ln θ, \
-                 {} of ln β, {}.",
+                "The curve is the lognormal curve of maximum likelihood (Baker 2015). Its standard errors are {} of \
+                 ln θ and {} of ln β ({}).",
                 significant(median, 2),
                 significant(dispersion, 2),
                 if curve.left_out.is_some() {
@@ -200,7 +203,8 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
             "never decrease with intensity".to_owned()
         } else {
             format!(
-                "decrease somewhere (p = {} if failure never becomes less likely with intensity)",
+                "decrease at some intensities (p = {} under the assumption that failure never becomes less likely \
+                 with intensity)",
                 significant(curve.monotony.p, 2)
             )
         }
@@ -240,10 +244,16 @@ fn limits(curves: &[LimitCurve], cases: &Cases) -> Table {
             }),
             ("95 % interval", unit, &|of| Cell::maybe(interval(of))),
             ("dispersion β", "", &|of| Cell::number(fitted(of).map(|of| of.dispersion), 2)),
-            ("fraction decreases (p)", "", &|of| Cell::number(violated(of), 2)),
-            (&format!("{} with survival above a failure", cases.curves_are()), "", &|of| {
-                count(returned(of))
-            }),
+            ("test of monotonicity (p)", "", &|of| Cell::number(violated(of), 2)),
+            (
+                &format!(
+                    "{} {} which the stack stands above a level at which it fails",
+                    cases.curves_are(),
+                    if cases.curves_are() == "motions" { "under" } else { "on" }
+                ),
+                "",
+                &|of| count(returned(of)),
+            ),
             ("remark", "", &|of| Cell::text(remark(of))),
         ],
     )
@@ -276,11 +286,11 @@ fn losses(losses: &Losses, measure: &Measure) -> Table {
         ("cases", ""),
         ("barrels fallen", ""),
         ("95 % interval", ""),
-        ("burst, central", ""),
-        ("burst, range", ""),
+        ("barrels burst, central assumption", ""),
+        ("barrels burst, range of the assumptions", ""),
     ];
-    columns.extend(by_force.then_some(("burst, by force", "")));
-    columns.push(("wine lost, central", "L"));
+    columns.extend(by_force.then_some(("barrels burst, by force", "")));
+    columns.push(("wine lost, central assumption", "L"));
     let mut table =
         Table::new("Expected losses of one stack: means over the cases of each level.", &columns);
     for loss in &losses.levels {
@@ -407,7 +417,7 @@ fn motions(decision: &Decision, made: &Provenance) -> Table {
         Cell::maybe(found.map(|motion| &motion.source))
     };
     Table::of(
-        "Motions, with the number of cases of each.",
+        "Motions, with the number of cases run under each.",
         decision.cases.records.iter().zip(counts),
         &[
             ("motion", "", &|(name, _)| Cell::text(*name)),

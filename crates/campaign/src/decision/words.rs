@@ -1,7 +1,7 @@
 //! Sentences of the report page of a study: verdict and warnings.
 
 use barrelstack_fragility::{FitError, Interval, wilson};
-use barrelstack_report::{Cell, capital, measured, significant};
+use barrelstack_report::{Cell, measured, significant};
 
 use super::Decision;
 use super::cases::Cases;
@@ -39,8 +39,12 @@ pub(super) fn count(count: impl Into<f64>) -> Cell {
 
 /// Returns a note on runs without a verdict; `None` if there are no such runs.
 pub(crate) fn left_out(lost: usize, runs: usize) -> Option<String> {
+    let (have, are) = if lost == 1 { ("has", "is") } else { ("have", "are") };
     (lost > 0).then(|| {
-        format!("{lost} of {runs} runs have no verdict and are left out; the column `error` of the tables gives the reasons.")
+        format!(
+            "{lost} of {runs} runs {have} no verdict and {are} left out; the column `error` of the tables gives the \
+             reasons."
+        )
     })
 }
 
@@ -60,9 +64,9 @@ pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
 /// Formats an annual rate of collapse as a return period, such as "a collapse once in 500 years".
 fn recurrence(rate: f64) -> String {
     if rate <= 0.0 {
-        return "no collapse".to_owned();
+        return "no stack collapses".to_owned();
     }
-    format!("a collapse once in {} years", significant(1.0 / rate, 2))
+    format!("a stack collapses once in {} years on average", significant(1.0 / rate, 2))
 }
 
 /// Returns the reason why there is no fitted curve; `format` formats intensities.
@@ -117,7 +121,8 @@ fn collapse(decision: &Decision) -> String {
         },
     );
     let of = cases.stacks.as_ref().map_or_else(String::new, |_| format!(" of {stacks}"));
-    let counted = format!("{collapsed} of {} cases{of} collapse", cases.all.len());
+    let collapse = if collapsed == 1 { "collapses" } else { "collapse" };
+    let counted = format!("{collapsed} of {} cases{of} {collapse}", cases.all.len());
     if curve.violates_order() {
         return format!(
             "{counted}, and collapse does not become steadily likelier with {}: use the raw fractions.",
@@ -132,7 +137,7 @@ fn collapse(decision: &Decision) -> String {
                 |median| format!("{} with 95 % confidence; {rests_on}", measure.range(median)),
             );
             format!(
-                "At a {} of {} ({known}) half of the {stacks} collapse.",
+                "At a {} of {} ({known}), half of the {stacks} collapse.",
                 measure.label,
                 measure.words(fit.curve.median)
             )
@@ -156,8 +161,9 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
     let mut said = Vec::new();
     let endings = &cases.endings;
     if endings.cut > 0 {
+        let were = if endings.cut == 1 { "was" } else { "were" };
         said.push(format!(
-            "{} of {} cases were cut short while the ground still moved.",
+            "{} of {} cases {were} cut short while the ground still moved.",
             endings.cut, endings.judged
         ));
     }
@@ -167,7 +173,7 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
             // The headline states the median, unless it warns against the curve.
             said.push(if curve.violates_order() {
                 format!(
-                    "A fitted curve, which cannot decrease, has a median {} of {} ({} with 95 % confidence) and a \
+                    "The fitted curve, which cannot decrease, has a median {} of {} ({} with 95 % confidence) and a \
                      dispersion of {dispersion}.",
                     measure.label,
                     measure.words(fit.curve.median),
@@ -177,7 +183,7 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
                 format!("The dispersion of the fitted curve is {dispersion}.")
             });
             said.push(format!(
-                "One stack in ten collapses at {}, nine in ten at {}{}.",
+                "One stack in ten collapses at {}, and nine in ten collapse at {}{}.",
                 measure.words(fit.curve.intensity(0.1)),
                 measure.words(fit.curve.intensity(0.9)),
                 if curve.violates_order() { " by that curve" } else { "" }
@@ -193,7 +199,7 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
         decision.losses.as_ref().ok().and_then(|losses| Some((losses, losses.levels.last()?)))
     {
         said.push(format!(
-            "At {} a stack of {} barrels loses {} of them on average ({} with 95 % confidence).",
+            "At {}, a stack of {} barrels loses {} of them on average ({} with 95 % confidence).",
             measure.words(last.intensity),
             losses.barrels,
             measured(last.fallen, 1),
@@ -204,13 +210,13 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
         let rate = &site.limits[0];
         let annual = rate.fitted.as_ref().unwrap_or(&rate.raw).low;
         said.push(format!(
-            "With the hazard curve in {}, this means {}, with a chance of {} in {} years{}.",
+            "With the hazard curve in {}, {}; the chance of a collapse within {} years is {}{}.",
             site.hazard.file,
             recurrence(annual),
-            percent(rate.chance),
             site.years,
+            percent(rate.chance),
             site.lost.as_ref().map_or_else(String::new, |lost| format!(
-                ", and {} barrels fall per year",
+                ", and {} barrels of a stack fall per year on average",
                 measured(lost.fallen.low, 2)
             ))
         ));
@@ -245,8 +251,9 @@ pub(super) fn warnings(
         ));
     }
     if cases.left_out > 0 {
+        let (have, are) = if cases.left_out == 1 { ("has", "is") } else { ("have", "are") };
         said.push(format!(
-            "{} of {} cases have no verdict and are left out; the column `error` of the table gives the reasons.",
+            "{} of {} cases {have} no verdict and {are} left out; the column `error` of the table gives the reasons.",
             cases.left_out,
             cases.left_out + cases.all.len()
         ));
@@ -299,12 +306,12 @@ pub(super) fn warnings(
                 )
             };
             said.push(format!(
-                "{} of {} {} {} the stack standing at one level of shaking although it falls at a lower level (the \
+                "{} {} of {} {}, the stack stands at one level of shaking although it collapses at a lower level (the \
                  first: collapse at {}, standing at {}). {why}.",
+                if cases.curves_are() == "motions" { "Under" } else { "On" },
                 returned.len(),
                 cases.curves(),
                 cases.curves_are(),
-                if returned.len() == 1 { "leaves" } else { "leave" },
                 measure.words(first.failed),
                 measure.words(first.stood)
             ));
@@ -324,9 +331,9 @@ fn islands(cases: &Cases, curve: &LimitCurve) -> Vec<String> {
     falls
         .map(|fall| {
             format!(
-                "{} is not monotone: {} of {} cases at {}, but only {} of {} at {} (p = {}). {meaning}; use the \
-                 raw fractions.",
-                capital(&curve.limit.words()),
+                "The limit state \"{}\" does not become steadily likelier with intensity: it is reached in {} of {} \
+                 cases at {}, but only in {} of {} at {} (p = {}). {meaning}; use the raw fractions.",
+                curve.limit.words(),
                 fall.from.failures,
                 fall.from.cases,
                 measure.words(fall.from.intensity),
@@ -345,8 +352,8 @@ fn of_site(cases: &Cases, losses: Option<&Losses>, site: &Site) -> Vec<String> {
     let of = rate.fitted.as_ref().unwrap_or(&rate.raw);
     if of.high > 1.1 * of.low {
         said.push(format!(
-            "The hazard table ends too early: because of shaking beyond its last row, the rate of collapse lies between {} and \
-             {} per year. Add rows of stronger shaking.",
+            "The hazard table ends too early: since it gives no rate for stronger shaking than in its last row, the \
+             rate of collapse is only known to lie between {} and {} per year. Add rows of stronger shaking.",
             significant(of.low, 2),
             significant(of.high, 2)
         ));

@@ -150,7 +150,11 @@ fn headline(all: &Heights) -> String {
         in_planes(all, "across the barrels and along them", "shaken in all directions"),
         found(all, levels, velocity),
         next.map(|next| {
-            format!("; in {} not even two levels do{}", named(next), weaker(all, next))
+            format!(
+                "; in {}, not even two levels have a low risk{}",
+                named(next),
+                weaker(all, next)
+            )
         })
         .unwrap_or_default(),
         over_constants(all, velocity)
@@ -211,13 +215,13 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
     }
     let decides = height
         .decisive(velocity)
-        .map_or_else(String::new, |one| format!(", and the {} decides", one.name));
+        .map_or_else(String::new, |one| format!("; it depends most on the {}", one.name));
     let weaker = VELOCITIES
         .into_iter()
         .map_while(|velocity| Some((velocity, highest_over_constants(all, velocity)?)))
         .last();
     let weaker = weaker.map_or_else(String::new, |(velocity, levels)| {
-        format!("; in {} up to {levels} levels do", named(velocity))
+        format!(". In {}, up to {levels} levels have a low risk", named(velocity))
     });
     format!(
         " {uncertain} not even two levels have a low risk: the probability of collapse is {shares} (95 % range)\
@@ -232,8 +236,8 @@ fn over_constants_table(all: &Heights) -> Table {
     by_height(
         all,
         format!(
-            "95 % range of the chance of collapse over the uncertain constants of the seats{}, and the constant that \
-             decides.",
+            "95 % range of the chance of collapse over the uncertain constants of the seats{}, and the constant on \
+             which the chance depends most.",
             in_planes(all, ", in the direction with the higher upper end", "")
         ),
         |levels, velocity| {
@@ -315,8 +319,8 @@ fn sentences(all: &Heights) -> Vec<String> {
     if let Some((height, margin)) = weakest.and_then(|height| Some((height, height.static_margin?)))
     {
         said.push(format!(
-            "Stacks of {} levels have the smallest static margin{}: they collapse under a steady push of {}, which \
-             corresponds to a floor tilted by {:.0} degrees.",
+            "Stacks of {} levels have the smallest static margin{}: they collapse under a steady horizontal \
+             acceleration of {}, which corresponds to a floor tilted by {:.0} degrees.",
             height.levels,
             inserted(height.direction),
             gravities(margin),
@@ -354,8 +358,8 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(
             "With a probability of 95 %, the range contains the chance of collapse of a stack whose friction, \
              stiffness and damping are drawn once from their distributions; it includes the sampling error. The \
-             brackets in the table above are for stacks whose constants are drawn anew for every run. The constant \
-             that decides changes the chance by 20 percentage points or more over its own range. Measure this \
+             brackets in the table above are for stacks whose constants are drawn anew for every run. A constant is \
+             named only if it changes the chance by 20 percentage points or more over its own range. Measure this \
              constant, and state its value in a scenario of your own.",
         ),
         text(
@@ -541,8 +545,8 @@ fn medians(all: &Heights) -> Figure {
     }
     Figure::new(
         "medians",
-        "Peak ground velocity at which half of the stacks collapse, by the fitted curves, with 95 % intervals. A height \
-         without a dot has no curve; the table gives the reason.",
+        "Peak ground velocity at which half of the stacks collapse according to the fitted curves, with 95 % \
+         intervals. A height without a dot has no curve; the table gives the reason.",
         Plot {
             x: level_axis(all),
             y: Axis::new("median PGV of collapse", "cm/s"),

@@ -143,16 +143,17 @@ fn sentences(all: &Ranking) -> Vec<String> {
     if let Some((best, saved)) = best.and_then(|best| Some((best, best.saved_together?))) {
         let shown = |x: f64| significant(x, 2);
         said.push(format!(
-            "It keeps {} barrels from falling on average ({} to {} with 95 % confidence, simultaneously for all {} \
-             protections that were tried). The mean for the best of many protections tends to be somewhat too \
-             favorable.",
+            "This protection keeps {} barrels from falling on average ({} to {} with 95 % confidence, simultaneously \
+             for all {} protections that were tried). The mean for the best of many protections tends to be somewhat \
+             too favorable.",
             shown(saved.mean),
             shown(saved.low),
             shown(saved.high),
             all.tries()
         ));
         said.push(format!(
-            "It costs US${:.0} to {:.0} per stack; the frequency of collapse is {} instead of {}.",
+            "This protection costs US${:.0} to {:.0} per stack; with it, the frequency of collapse is {} instead of \
+             {}.",
             best.protection.cost[0],
             best.protection.cost[1],
             collapse(all, best.collapse.mean),
@@ -160,17 +161,22 @@ fn sentences(all: &Ranking) -> Vec<String> {
         ));
         said.extend(order(all, best));
         if best.protection.moved > 0 {
-            said.push(format!("{} barrels have to be stored elsewhere.", best.protection.moved));
+            said.push(match best.protection.moved {
+                1 => "1 barrel has to be stored elsewhere.".to_owned(),
+                many => format!("{many} barrels have to be stored elsewhere."),
+            });
         }
         if let Some((words, worn)) = &best.worn {
             said.push(format!(
-                "In its worst state ({words}) {} barrels fall, under the motions of the first round.",
+                "With this protection in its worst state ({words}), {} barrels fall on average under the motions of \
+                 the first round.",
                 significant(worn.mean, 2)
             ));
         }
         if let Some(fewest) = all.all.first().filter(|one| one.protection != best.protection) {
             said.push(format!(
-                "The fewest barrels fall on average, {}, with this protection: {}, for US${:.0} to {:.0}.",
+                "The fewest barrels, {} on average, fall with another protection: {}, which costs US${:.0} to {:.0} \
+                 per stack.",
                 significant(fewest.fallen.mean, 2),
                 fewest.protection.name,
                 fewest.protection.cost[0],
@@ -196,14 +202,14 @@ fn order(all: &Ranking, best: &Ranked) -> Option<String> {
     let next = next.filter(|(next, _)| next.protection.kind != Kind::AsItIs);
     let next = next.map_or_else(String::new, |(next, share)| {
         format!(
-            ", and fewer than with the next protection of the ranking ({}) in {}",
-            next.protection.name,
-            percent(share)
+            "; in {}, fewer barrels fall than with the next protection in the ranking ({})",
+            percent(share),
+            next.protection.name
         )
     });
     Some(format!(
-        "The friction, stiffness and damping of the seats are uncertain: in {} of the draws of these constants and \
-         of the sampling error, fewer barrels fall with this protection than with the stack as it is{next}.",
+        "The friction, stiffness and damping of the seats are uncertain: in {} of the random draws of these \
+         constants and of the sampling error, fewer barrels fall with this protection than without any{next}.",
         percent(better)
     ))
 }
@@ -268,19 +274,23 @@ fn table(all: &Ranking) -> Table {
             ("barrels stored elsewhere", "", &|one| Cell::text(one.protection.moved.to_string())),
             (collapses, "", &|one| Cell::text(collapse(one))),
             ("range over the uncertain constants", "", &|one| Cell::maybe(over(one))),
-            ("better than as it is, in draws of the constants", "", &|one| {
-                Cell::maybe(one.better_than_as_it_is.map(percent))
-            }),
-            ("better than the next row, in draws of the constants", "", &|one| {
-                Cell::maybe(one.better_than_next.map(percent))
-            }),
+            (
+                "draws of the constants in which fewer barrels fall than in the stack as it is",
+                "",
+                &|one| Cell::maybe(one.better_than_as_it_is.map(percent)),
+            ),
+            (
+                "draws of the constants in which fewer barrels fall than in the next row",
+                "",
+                &|one| Cell::maybe(one.better_than_next.map(percent)),
+            ),
             (fallen, "", &|one| Cell::text(interval(all, &one.fallen))),
             (burst, "", &|one| Cell::text(interval(all, &one.burst))),
-            ("fewer fall, same motions", "", &|one| Cell::maybe(shown(&one.saved))),
-            ("fewer fall, for all protections at once", "", &|one| {
+            ("barrels saved, same motions", "", &|one| Cell::maybe(shown(&one.saved))),
+            ("barrels saved, for all protections at once", "", &|one| {
                 Cell::maybe(shown(&one.saved_together))
             }),
-            ("fallen in the worst state", "", &|one| Cell::maybe(worn(one))),
+            ("barrels fallen in the worst state", "", &|one| Cell::maybe(worn(one))),
             ("weaker direction", "", &|one| Cell::text(one.direction.words())),
             ("motions", "", &|one| Cell::text(one.motions.to_string())),
         ],
@@ -289,17 +299,18 @@ fn table(all: &Ranking) -> Table {
 
 fn legend(all: &Ranking) -> String {
     format!(
-        "•: no other protection that was run in all rounds costs at most as much and loses fewer barrels. Protections \
-         with fewer motions were dropped early, because a cheaper protection is significantly better or because half \
-         of the others did better. \"Fewer fall\" compares run by run under the same {}, which is more precise than \
-         the difference of two means. The next column gives an interval that holds for all {} protections at once. \
-         This interval decides whether a protection helps significantly, since the best of many protections tends to \
-         look better than it is. All intervals allow for the small number of motions. Numbers are for the direction \
-         of shaking in which more barrels fall. With a probability of 95 %, the range over the uncertain constants \
-         contains the frequency of collapse of a stack whose friction, stiffness and damping are drawn from their \
-         distributions; it includes the sampling error. Each draw of the constants applies to all protections; a \
-         protection is better in a draw if fewer barrels fall with it. In the draws, the number of barrels that fall \
-         in a collapse is the mean at each level of shaking and does not depend on the constants.",
+        "•: no other protection that was run in all rounds costs at most as much and loses fewer barrels. \
+         Protections with fewer motions were dropped early, because a cheaper protection is significantly better or \
+         because half of the others did better. \"Barrels saved\" is the number of barrels that a protection keeps \
+         from falling; it compares run by run under the same {}, which is more precise than the difference of two \
+         means. The next column gives an interval that holds for all {} protections at once. This interval decides \
+         whether a protection helps significantly, since the best of many protections tends to look better than it \
+         is. All intervals allow for the small number of motions. Numbers are for the direction of shaking in which \
+         more barrels fall. With a probability of 95 %, the range over the uncertain constants contains the \
+         frequency of collapse of a stack whose friction, stiffness and damping are drawn from their distributions; \
+         it includes the sampling error. Each draw of the constants applies to all protections; a protection is \
+         better in a draw if fewer barrels fall with it. In the draws, the number of barrels that fall in a collapse \
+         is the mean at each level of shaking and does not depend on the constants.",
         if all.request.records.is_empty() && all.request.folder.is_none() {
             "motions and friction"
         } else {

@@ -252,15 +252,20 @@ fn headline(league: &League) -> String {
     let next = league.rows.get(1).zip(league.better_than_next(0));
     let next = next.map_or_else(String::new, |((next, _), share)| {
         format!(
-            " In {} of the draws of these constants its score is higher than that of the next, {}.",
+            " In {} of the random draws of the uncertain constants, its score is higher than the next score, that of \
+             {}.",
             percent(share),
             next.name
         )
     });
     let not = match league.not_scored.len() {
         0 => String::new(),
-        1 => " One more could not be scored; the reason follows the table.".to_owned(),
-        more => format!(" {more} more could not be scored; the reasons follow the table."),
+        1 => {
+            " One more rack or device could not be scored; the reason follows the table.".to_owned()
+        }
+        more => format!(
+            " {more} more racks and devices could not be scored; the reasons follow the table."
+        ),
     };
     format!(
         "The highest RockScore of {} racks and devices{} is {}{range}: {}.{next}{not}",
@@ -289,11 +294,13 @@ fn table(league: &League) -> Table {
             ("range over the uncertain constants", "cm/s", &|(.., sheet)| {
                 Cell::maybe(range(sheet.range()))
             }),
-            ("higher than the next, in draws", "", &|(at, ..)| {
+            ("draws in which the score is higher than in the next row", "", &|(at, ..)| {
                 Cell::maybe(league.better_than_next(*at).map(percent))
             }),
-            ("decides", "", &|(.., sheet)| Cell::maybe(sheet.decisive().map(|one| one.name))),
-            ("weakest", "", &|(.., sheet)| {
+            ("most important constant", "", &|(.., sheet)| {
+                Cell::maybe(sheet.decisive().map(|one| one.name))
+            }),
+            ("weakest state and direction", "", &|(.., sheet)| {
                 Cell::maybe(
                     sheet
                         .weakest()

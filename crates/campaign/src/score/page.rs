@@ -27,11 +27,11 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             Block::Figure(scale_of(sheet)),
             Block::Table(table(sheet)),
             text(
-                "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood for \
-                 all runs, with its 95 % interval (clustered by motion) in brackets. The smallest of all velocities, \
-                 rounded down, is the score. With a probability of 95 %, the range over the uncertain constants \
-                 contains the velocity of a stack whose friction, stiffness and damping are drawn from their \
-                 distributions; it includes the sampling error.",
+                "The velocity at which one stack in ten collapses is that of the lognormal curve of maximum \
+                 likelihood for all runs, with its 95 % interval (clustered by motion) in brackets. The smallest of \
+                 all velocities, rounded down, is the score. With a probability of 95 %, the range over the \
+                 uncertain constants contains the velocity of a stack whose friction, stiffness and damping are \
+                 drawn from their distributions; it includes the sampling error.",
             ),
             Block::Figure(chart(sheet)),
             heading("The protocol"),
@@ -77,8 +77,9 @@ fn scale_of(sheet: &Sheet) -> Figure {
     let known = sheet.protocol.name.split(',').next() == Some(Protocol::rockscore().name.as_str());
     let others = if known { references() } else { Vec::new() };
     let caption = if known {
-        "The score of this stack, and the scores of the catalog's racks without devices, which are computed with \
-         every fourth motion of the protocol."
+        "The score of this stack, and the scores of the catalog's racks without devices. The scores of the catalog \
+         come from 8 of the 24 motions of the protocol: the pulses with periods of 0.5 s and 2.7 s, both components \
+         of South Napa 2014, and 4 synthetic motions."
     } else {
         "The score of this stack."
     };
@@ -138,7 +139,7 @@ fn headline(sheet: &Sheet) -> String {
             "RockScore {score}: shaken {direction} at up to {score} cm/s, nine in ten {stacks} stand."
         ),
         Capacity::Above(_) => format!(
-            "RockScore of at least {score}: under the strongest shaking of the protocol nine in ten {stacks} stand."
+            "RockScore of at least {score}: under the strongest shaking of the protocol, nine in ten {stacks} stand."
         ),
         Capacity::Below(lowest) => format!(
             "RockScore 0: more than one in ten {stacks} collapse when shaken {direction} at {} cm/s, the \
@@ -170,22 +171,21 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
 fn over_constants(sheet: &Sheet) -> Option<String> {
     let [low, high] = sheet.range().filter(|_| !sheet.draws().is_empty())?;
     let decides = sheet.decisive().map(|one| {
-        let at =
-            |at: &ShareAt| format!("{} for a value of {}", percent(at.share), one.words(at.value));
+        let at = |at: &ShareAt| format!("{} at {}", percent(at.share), one.words(at.value));
         let ends = one.low_median_high().map_or_else(String::new, |[from, _, to]| {
             format!(
-                ": the share of stacks that collapse at {} cm/s is {} and {}",
+                ": in shaking of {} cm/s, the share of stacks that collapse is {} and {}",
                 sheet.score().max(1),
                 at(from),
                 at(to)
             )
         });
-        format!("; the {} decides{ends}", one.name)
+        format!("; it depends most on the {}{ends}", one.name)
     });
     Some(format!(
         "Allowing for the uncertain friction, stiffness and damping of the seats, the score is between {low} and {high} with \
          a probability of 95 %{}.",
-        decides.unwrap_or_else(|| "; none of these constants alone decides the result".to_owned())
+        decides.unwrap_or_else(|| "; none of these constants alone decides the score".to_owned())
     ))
 }
 
@@ -205,7 +205,7 @@ fn table(sheet: &Sheet) -> Table {
     let mut columns = vec![
         ("state", ""),
         ("shaken", ""),
-        ("one in ten collapses at", ""),
+        ("one stack in ten collapses at", ""),
         ("range over the uncertain constants", "cm/s"),
     ];
     columns.extend(heads.iter().map(|head| (head.as_str(), "")));

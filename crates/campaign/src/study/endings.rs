@@ -75,16 +75,19 @@ impl Endings {
     /// are reported.
     pub fn no_losses(&self) -> Option<String> {
         let Self { judged, stopped, short, moving, .. } = *self;
+        let were = |count: u64| if count == 1 { "was" } else { "were" };
         if stopped > 0 {
+            let were = were(stopped);
             return Some(format!(
-                "{stopped} of {judged} cases were stopped a fixed time after their collapse \
+                "{stopped} of {judged} cases {were} stopped a fixed time after the collapse \
                  (run.stop_after_collapse, or run.until = \"verdict\"), before everything had fallen; omit this \
                  setting to follow every case until nothing moves"
             ));
         }
         if short > 0 {
+            let were = were(short);
             return Some(format!(
-                "{short} of {judged} cases were ended by run.duration before everything had come to rest; omit this \
+                "{short} of {judged} cases {were} ended by run.duration before everything had come to rest; omit this \
                  setting to follow every case until nothing moves"
             ));
         }
@@ -100,8 +103,9 @@ impl Endings {
     pub fn sentences(&self) -> Vec<String> {
         let mut said = Vec::new();
         if self.cut > 0 {
+            let were = if self.cut == 1 { "was" } else { "were" };
             said.push(format!(
-                "{} of {} cases were cut short by run.duration while the ground still moved, and up to {:.1} s of a \
+                "{} of {} cases {were} cut short by run.duration while the ground still moved, and up to {:.1} s of a \
                  motion were not run; {} of the stacks stood until then, and the effect of the rest of their motions \
                  is not known. Omit run.duration to run every motion to its end.",
                 self.cut, self.judged, self.longest_cut, self.open

@@ -208,13 +208,12 @@ pub fn document(layouts: &[Layout], found: &CellarComparison) -> Document {
         Block::Table(table(found)),
         heading("How the stacks fall"),
         Block::Table(courses(found)),
-        heading("Where barrels end"),
+        heading("Where the barrels end up"),
     ];
     blocks.extend(layouts.iter().enumerate().map(|(at, layout)| {
         let caption = format!(
-            "{} from above. The color of a stack shows what happens to it in the most typical \
-             run. Shades (barrels): share \
-             of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m.",
+            "{} from above. The color of a stack shows what happens to it in the most typical run. The shades show \
+             the share of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m.",
             capital(&layout.name)
         );
         Block::Figure(Figure::new(format!("plan-{}", at + 1), caption, layout.picture.clone()))

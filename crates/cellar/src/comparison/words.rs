@@ -52,11 +52,12 @@ fn best(found: &CellarComparison, first: &LayoutAnswer) -> String {
         ),
         Some(_) => format!(
             "None of {} other layouts loses fewer barrels for its capacity than \"{}\"; of the {} barrels of \
-             that layout, {} fall{}.",
+             that layout, {} {}{}.",
             many - 1,
             first.name,
             first.capacity,
             estimate(&first.barrels_fallen),
+            if estimate(&first.barrels_fallen) == "1" { "falls" } else { "fall" },
             on_average(first.counted)
         ),
     }
@@ -125,8 +126,12 @@ fn clause(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> Str
 /// Returns a clause such as "5 of 16 barrels fall"; `of` is the text between number and noun, such as "of 16 ".
 fn fall(barrels: f64, of: &str) -> String {
     let shown = amount(barrels);
-    if shown == "1" && of.is_empty() {
-        return "1 barrel falls".to_owned();
+    if shown == "1" {
+        return if of.is_empty() {
+            "1 barrel falls".to_owned()
+        } else {
+            format!("1 {of}barrels falls")
+        };
     }
     format!("{shown} {of}barrels fall")
 }
@@ -246,15 +251,21 @@ fn describe(one: &LayoutAnswer) -> String {
         format!("; for each stack that falls by itself, {} fall in total", amount(spread))
     });
     let [low, high] = one.cost.map(|dollars| measured(dollars, 0));
+    let fallen = amount(one.barrels_fallen.mean);
+    let fall = if fallen == "1" { "falls" } else { "fall" };
+    let alone = match estimate(&one.by_themselves) {
+        only if only == "1" => "1 falls by itself".to_owned(),
+        some => format!("{some} fall by themselves"),
+    };
+    let knocked = match estimate(&one.knocked_over) {
+        only if only == "1" => "1 is knocked over".to_owned(),
+        some => format!("{some} are knocked over"),
+    };
     format!(
-        "{}: of {capacity} barrels, {} fall{} ({share}). Of {stacks} stacks, {} fall by themselves \
-         and {} are knocked \
-         over{spread}. About {} of wine is lost; with the burst barrels it is worth US${low} to US${high}.",
+        "{}: of {capacity} barrels, {fallen} {fall}{} ({share}). Of {stacks} stacks, {alone} and \
+         {knocked}{spread}. About {} of wine is lost; the wine and the burst barrels are worth US${low} to US${high}.",
         capital(name),
-        amount(one.barrels_fallen.mean),
         on_average(one.counted),
-        estimate(&one.by_themselves),
-        estimate(&one.knocked_over),
         liters(one.wine_lost),
     )
 }

@@ -93,8 +93,8 @@ export async function ofRun(page, summary) {
       const cell = (name, values) => reading.are(`${name}, ${head}`, row(name)[at + 1], values);
       cell("variants with a verdict", [variants]);
       cell("variants that collapse", [collapsed]);
-      cell("share that collapses, with its 95 % interval", percents([share, ...interval]));
-      if (range) cell("range of the share over uncertain constants", percents(range));
+      cell("share of variants that collapse, with its 95 % interval", percents([share, ...interval]));
+      if (range) cell("range of this share over the uncertain constants", percents(range));
       if (loss) cell("first loss of a seat", [loss.p05, loss.p95]);
       if (fall) cell("first fall", [fall.p05, fall.p95]);
       if (fallen) cell("barrels fallen in a collapse", [fallen.p05, fallen.p95, barrels]);
@@ -112,7 +112,7 @@ export async function ofRun(page, summary) {
     });
   }
   const inSpace = summary.bodies.some((body) => "drop" in body);
-  const tables = tablesOf(shown, inSpace ? "Slips are" : "Largest slip");
+  const tables = tablesOf(shown, inSpace ? "Slips are" : "The largest slip");
   demand(tables.length === planes.length, `${tables.length} tables of bodies in ${planes.length} planes`);
   tables.forEach((table, plane) => {
     const { bodies } = planes[plane], column = (begin) => table.head.findIndex((head) => head.startsWith(begin));
@@ -191,7 +191,7 @@ export async function ofHeights(page, { heights }) {
 export async function ofStudy(page, decision) {
   const shown = await contents(page), reading = new Reading();
   isHeadline(shown, decision);
-  const [table] = tablesOf(shown, "Raw counts of collapse"), { raw, median, median_interval: interval } = decision.fragility[0];
+  const [table] = tablesOf(shown, 'Cases that reach the limit state "collapse'), { raw, median, median_interval: interval } = decision.fragility[0];
   reading.are("median in the headline", shown.headline, [median, ...interval].map((value) => 100 * value));
   demand(table.rows.length === raw.length, "the page has other levels than the JSON");
   raw.forEach(({ intensity, cases, failures, interval }, at) => {
@@ -234,7 +234,7 @@ export async function ofProtection(page, document) {
     reading.are(`cost of ${name}`, cell("cost"), cost[0] === cost[1] ? [cost[0]] : cost);
     reading.are(`collapse with ${name}`, cell("collapse"), percents(ends(collapse)));
     reading.are(`barrels fallen with ${name}`, cell("barrels fallen"), ends(fallen));
-    reading.are(`barrels saved by ${name}`, cell("fewer fall"), saved === null ? [null] : ends(saved));
+    reading.are(`barrels saved by ${name}`, cell("barrels saved"), saved === null ? [null] : ends(saved));
     reading.are(`motions of ${name}`, cell("motions"), [motions]);
   }
   return reading.close();
@@ -348,7 +348,7 @@ export async function ofAftershocks(page, document) {
     demand(order.rows[at][0] === name, `place ${at} is that of ${order.rows[at][0]}`);
     const cell = cellsOf(order, name);
     reading.are(`${name} stands`, cell("stands after"), shareOf(stands));
-    falls.forEach((one, k) => reading.are(`${name} falls`, cell(`falls under ${document.aftershocks[k].factor}`), shareOf(one)));
+    falls.forEach((one, k) => reading.are(`${name} falls`, cell(`falls under strength ${document.aftershocks[k].factor}`), shareOf(one)));
   });
   return reading.close();
 }
