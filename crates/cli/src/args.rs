@@ -163,7 +163,7 @@ pub(crate) struct RunArgs {
     pub(crate) quiet: bool,
 }
 
-/// A part of some work, such as 3/8.
+/// One of several parts of the variants of a cellar, such as 3/8 for the third of eight parts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartName(pub(crate) Part);
 

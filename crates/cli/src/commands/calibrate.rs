@@ -419,7 +419,7 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
     found.map_err(|error| placed(error, &scenarios[0], &args.changes.of(&args.scenario)))
 }
 
-/// Fits parameters to statements on the share of stacks that fell in an earthquake.
+/// Fits parameters to statements from a file. Each statement is about the share of stacks that fell in an earthquake.
 fn fallen(
     args: &CollapseArgs,
     parameters: &[Parameter],

@@ -53,7 +53,7 @@ pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCod
     Err(first.into())
 }
 
-/// Prints how the stacks of a cellar stand at rest, before the motion.
+/// Lets a stack of each number of levels settle without the motion, and prints whether and how it stands.
 fn stands(cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Result<()> {
     for model in &cellar.models {
         let found =
@@ -70,7 +70,7 @@ fn stands(cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Rejects a file that exists.
+/// Returns an error if a file exists. The error suggests a different value of `option`.
 fn is_new(path: &Path, option: &str) -> anyhow::Result<()> {
     // A dangling link exists, too.
     if path.symlink_metadata().is_ok() {
@@ -79,7 +79,9 @@ fn is_new(path: &Path, option: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs a cellar, then prints and writes the result. If `first` returns a sentence, it is printed before the result.
+/// Runs a cellar, then prints and writes the result.
+///
+/// If the result is printed as text, it follows the sentence that `first` returns for the result, if any.
 pub(super) fn run(
     args: &RunArgs,
     cellar: Cellar,
@@ -158,7 +160,7 @@ pub(super) fn run(
     Ok(super::status(answer.is_invalid()))
 }
 
-/// Runs a part of the variants of a cellar and keeps their results.
+/// Runs one part of the variants of a cellar, and stores their results in the folder `keep`.
 fn run_part(args: &RunArgs, cellar: &Cellar, part: Part, keep: &Path) -> anyhow::Result<ExitCode> {
     let progress = Progress::new(!args.quiet);
     let found =

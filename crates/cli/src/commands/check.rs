@@ -14,7 +14,7 @@ use super::Loaded;
 use crate::args::{CheckArgs, ScenarioArgs};
 use crate::printer;
 
-/// Numbers of levels in the table.
+/// Numbers of levels in the table of static stability.
 const LEVELS: std::ops::RangeInclusive<u32> = 2..=7;
 
 /// Reads the scenario, builds the stack, lets it settle, and prints the findings.
@@ -60,8 +60,8 @@ pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Tabulates the static stability of the stack of a scenario at every height, on its own rack and
-/// on every rack of the catalog.
+/// Tabulates the static stability of the stack of a scenario for every number of levels in [`LEVELS`], on its own rack
+/// and on every other rack of the catalog.
 fn table(scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Result<StabilityTable> {
     let stack = scenario.stack().filter(|_| !scenario.is_spatial()).with_context(|| {
         "--table needs a stack in a plane: use a scenario with a stack, and set stack.view to \"both\", \"transverse\" or \

@@ -116,7 +116,9 @@ pub(super) fn name(names: &mut Vec<String>, given: &[String]) -> anyhow::Result<
     Ok(())
 }
 
-/// Runs all stacks, each given with its arguments, and writes the comparison.
+/// Runs all stacks and writes the comparison.
+///
+/// `requested` holds the arguments of each scenario, to which errors refer.
 fn stacks(
     args: &CompareArgs,
     requested: &[(String, ScenarioArgs)],

@@ -46,9 +46,11 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     Ok(super::run::status(&answer))
 }
 
-/// Returns the given changes, preceded by those of the demo. Unless a change selects the view, the demo is
-/// three-dimensional. It then has fewer variants than other runs, because a three-dimensional variant takes several
-/// times as long as one in a plane.
+/// Returns the given changes, preceded by those of the demo.
+///
+/// Unless a given change sets `stack.view`, the demo is three-dimensional. It then has fewer variants than other runs,
+/// unless a given change sets their number, because a three-dimensional variant takes several times as long as one in
+/// a plane.
 fn in_space(given: &[String]) -> Vec<String> {
     let states =
         |path: &str| given.iter().any(|one| one.split('=').next().map(str::trim) == Some(path));

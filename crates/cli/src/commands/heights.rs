@@ -67,7 +67,7 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
     args.page.end(file, &found.document, &found.to_document(), lines(&found), &found.warnings)
 }
 
-/// Returns the table as text.
+/// Formats the table as lines of text.
 fn lines(found: &Heights) -> Vec<String> {
     let mut lines = vec![found.document.verdict.headline.clone(), String::new()];
     for direction in found.request.directions() {

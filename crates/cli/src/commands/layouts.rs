@@ -18,7 +18,9 @@ use crate::progress::Progress;
 /// Name of the layout without changes.
 const AS_IT_IS: &str = "as it is";
 
-/// Runs all layouts, each given with its arguments, and writes the comparison.
+/// Runs all layouts and writes the comparison.
+///
+/// `requested` holds the arguments of each given cellar, to which errors refer.
 pub(super) fn compare(
     args: &CompareArgs,
     requested: &[(String, ScenarioArgs)],

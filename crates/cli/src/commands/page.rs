@@ -109,7 +109,7 @@ pub(super) fn write(out: &Path, page: &Document, further: &[(&str, &[u8])]) -> a
     store_all(out, &texts.chain(files))
 }
 
-/// Returns lines that state the path of the page, to be printed below the findings.
+/// Returns an empty line and a line with the path of the page, to be printed below the findings.
 pub(super) fn place(out: &Path) -> [String; 2] {
     [String::new(), format!("page: {}", out.join("index.html").display())]
 }

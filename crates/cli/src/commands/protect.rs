@@ -78,7 +78,7 @@ pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
     )
 }
 
-/// Returns the options that name recorded motions, as typed.
+/// Returns the options that name recorded motions, with their values, as on a command line.
 fn motions(args: &ProtectArgs) -> String {
     let record = args.scenario.record.iter().map(|file| format!("--record {}", file.display()));
     let folder = args.motions.iter().map(|folder| format!("--motions {}", folder.display()));
@@ -143,7 +143,7 @@ fn before_and_after(args: &ProtectArgs, found: &mut Ranking) -> anyhow::Result<(
     }
 }
 
-/// Returns the table as text.
+/// Formats the table as lines of text.
 fn lines(found: &Ranking) -> Vec<String> {
     let mut lines = printer::verdict(&found.document.verdict);
     lines.push(String::new());

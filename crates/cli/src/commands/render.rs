@@ -79,7 +79,7 @@ fn rate(text: &str) -> Result<f64, String> {
 }
 
 impl RenderArgs {
-    /// Returns the parts to write, each once, in the order of the help.
+    /// Returns the parts to write, each once, in the order in which the help lists them.
     fn parts(&self) -> Vec<Part> {
         let requested = |part: &Part| {
             self.only.is_empty() || self.only.iter().any(|name| Part::from(*name) == *part)

@@ -20,7 +20,7 @@ use crate::comparison::Command;
 use crate::printer;
 use crate::progress::Progress;
 
-/// Maximum size (bytes) of the page that contains the program.
+/// Maximum size (bytes) of the HTML page that contains the program and is to be embedded in the report.
 const PAGE_LIMIT: usize = 64 << 20;
 
 /// Runs the scenario and prints and writes the result.
@@ -89,7 +89,8 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     Ok(status(&answer))
 }
 
-/// Reads the page that contains the program.
+/// Reads the HTML page that contains the program and is to be embedded in the report; an error if the page does not
+/// contain the program.
 fn engine(path: &Path) -> anyhow::Result<String> {
     let page = system::read(path, PAGE_LIMIT)
         .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is not text".to_owned()))

@@ -82,7 +82,7 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     )
 }
 
-/// Returns the league table as text.
+/// Formats the league table as lines of text.
 fn table(found: &League) -> Vec<String> {
     let mut lines =
         vec![format!("  {:60}{:>10}{:>16}", "rack or device", "RockScore", "95 % range")];
@@ -100,7 +100,7 @@ fn table(found: &League) -> Vec<String> {
     lines
 }
 
-/// Returns the verdict and the tables of the sheet as text.
+/// Formats the verdict and the tables of the sheet as lines of text.
 fn lines(sheet: &Sheet) -> Vec<String> {
     let mut lines = printer::verdict(&sheet.document.verdict);
     let velocities = &sheet.protocol.velocities;

@@ -42,7 +42,7 @@ fn open(path: &Path) -> anyhow::Result<Option<Arc<Opened>>> {
     Ok(Some(opened))
 }
 
-/// `true` if a file on the disk has the name of an archive and can be opened as one.
+/// Returns `true` if a file on the disk has the name of an archive and can be opened as one.
 pub(super) fn is_archive(path: &Path) -> bool {
     Archive::is_named(&path.to_string_lossy()) && open(path).is_ok_and(|opened| opened.is_some())
 }

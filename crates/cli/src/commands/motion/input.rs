@@ -123,7 +123,7 @@ impl Input {
         Ok(record)
     }
 
-    /// `true` if a folder, or an archive of several records, is among the files.
+    /// Returns `true` if a folder, or an archive of several records, is among the files.
     pub(super) fn has_folder(&self) -> bool {
         let several = |path: &Path, file: &str| {
             let options = self.options().unwrap_or_default();
@@ -164,7 +164,7 @@ impl Input {
         })
     }
 
-    /// Adds the sensitivities given as options, and those of the `StationXML` files.
+    /// Returns read options with the sensitivities given on the command line and those of the `StationXML` files.
     fn sensitivities(&self) -> anyhow::Result<ReadOptions> {
         let mut options = ReadOptions::default();
         for text in &self.sensitivity {
@@ -236,7 +236,7 @@ impl Input {
         self.unite(&self.read_each()?)
     }
 
-    /// Combines several records.
+    /// Combines several records into one.
     pub(super) fn unite(&self, records: &[Record]) -> anyhow::Result<Record> {
         if self.join {
             return Ok(Record::join(records)?);
@@ -298,7 +298,7 @@ impl Choice {
     }
 }
 
-/// Returns the file names of a record, without folders.
+/// Returns the file names of a record without folders, joined by commas.
 fn base_names(record: &Record) -> String {
     let names: Vec<&str> = record
         .file
@@ -421,8 +421,7 @@ fn read_station_xml(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     station_xml(&String::from_utf8_lossy(&text)).with_context(|| path.display().to_string())
 }
 
-/// Returns the files that have the extension of `StationXML` and are in the same folder as a file,
-/// sorted by name.
+/// Returns the .xml files in the folder of a file, sorted by name; they may be `StationXML` files.
 fn beside(file: &Path) -> Vec<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
     xml_files(folder.unwrap_or(Path::new(".")))

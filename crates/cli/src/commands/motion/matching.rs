@@ -226,7 +226,7 @@ fn matched(
     Ok((after, (!missed.is_empty()).then(|| missed_in_words(&missed))))
 }
 
-/// Tabulates, at some periods, the target and the spectra before and after matching.
+/// Tabulates the target and the spectra before and after matching, at fixed periods within the matched range.
 fn comparison(
     part: &Part,
     [before, after]: [&Record; 2],

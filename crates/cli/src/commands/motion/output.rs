@@ -73,7 +73,7 @@ impl Output {
 }
 
 impl Target {
-    /// Writes the record and returns warnings for users of the file.
+    /// Writes the record, and returns warnings about what the file format cannot store.
     pub(super) fn write(&self, record: &Record) -> anyhow::Result<Vec<String>> {
         let bytes = match self.form {
             Form::At2 if record.channels.len() != 1 => {
@@ -95,7 +95,8 @@ impl Target {
         Ok(self.losses(record))
     }
 
-    /// Returns warnings about information of a record that the file format cannot store.
+    /// Returns warnings about what the file format cannot store, such as the stage of a raw record or the initial
+    /// velocity of a channel.
     fn losses(&self, record: &Record) -> Vec<String> {
         let mut losses = Vec::new();
         if self.form != Form::At2 {
@@ -122,7 +123,8 @@ impl Target {
     }
 }
 
-/// Returns an error if the file exists or its folder does not.
+/// Returns an error if the path is a folder, if the file exists and must not be overwritten, or if its parent folder
+/// does not exist.
 pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
     if path.is_dir() {
         bail!("{} is a folder, not a file", path.display());
@@ -142,7 +144,7 @@ pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
     }
 }
 
-/// Creates the folder of a file if it is missing.
+/// Creates the parent folder of a file if it is missing.
 pub(super) fn make_folder_of(path: &Path) -> anyhow::Result<()> {
     path.parent().map_or(Ok(()), folder)
 }

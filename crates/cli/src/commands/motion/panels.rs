@@ -16,8 +16,8 @@ use crate::store::store;
 
 /// Damping ratio of the spectra.
 const DAMPING: f64 = 0.05;
-/// Resolution (dots per inch) of pixel pictures, at which three plots side by side have about 2000
-/// pixels.
+/// Resolution (dots per inch) of raster images, at which three plots side by side are about 2000
+/// pixels wide.
 const DPI: f64 = 96.0;
 /// Limit of the velocity axis, relative to the peak velocity after processing; the larger drift
 /// before processing is cut off.
@@ -116,7 +116,7 @@ pub(super) fn write(path: &Path, figure: &Figure) -> anyhow::Result<()> {
     store(path, &figure.to_bytes(known_format(path)?, DPI))
 }
 
-/// Returns an error if a picture cannot be written.
+/// Returns an error if the extension of a path is not that of a picture format, or if [`vacant`] rejects the path.
 pub(super) fn vacant_picture(path: &Path, overwrite: bool) -> anyhow::Result<()> {
     known_format(path)?;
     vacant(path, overwrite)
@@ -133,7 +133,7 @@ pub(super) fn format_of(path: &Path) -> Option<Format> {
     Format::ALL.into_iter().find(|format| ending.eq_ignore_ascii_case(format.extension()))
 }
 
-/// Returns a record reduced to the channel that `--of` selects.
+/// Returns a copy of a record with only the channel of index `place`; an error if there is no such channel.
 pub(super) fn only(record: &Record, place: usize) -> anyhow::Result<Record> {
     let Some(channel) = record.channels.get(place) else { bail!("there is no such component") };
     Ok(Record { channels: vec![channel.clone()], ..record.clone() })

@@ -59,13 +59,13 @@ struct Spectra {
     rotated: Option<Rotated>,
 }
 
-/// Peaks over all horizontal directions, with the direction of each largest peak.
+/// Peak responses over all horizontal directions, with the direction of the largest response at each period.
 struct Rotated {
     peaks: Vec<RotatedPeak>,
-    /// Directions of the largest peaks (degrees): clockwise from north if both azimuths are known,
+    /// Direction of the largest response at each period (degrees): clockwise from north if both azimuths are known,
     /// otherwise from the first component towards the second.
     directions: Vec<f64>,
-    /// Direction from which these directions are measured.
+    /// Reference of these directions, as stated in column headings.
     from: &'static str,
 }
 

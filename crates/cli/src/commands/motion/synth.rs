@@ -253,7 +253,7 @@ impl Source {
     }
 }
 
-/// Replaces the first step of the provenance of a motion by a description in terms of the
+/// Replaces the first step of the provenance of a motion by `made`, which describes the motion by its
 /// command-line options, with units.
 fn with_provenance(mut motion: GroundMotion, made: String) -> GroundMotion {
     match motion.provenance.first_mut() {

@@ -21,12 +21,12 @@ impl Table {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// `true` if there are no rows below the header.
+    /// Returns `true` if there are no rows below the header.
     pub(super) fn is_empty(&self) -> bool {
         self.rows.len() < 2
     }
 
-    /// Returns the table for a page.
+    /// Converts the table to a table of a page, with a caption.
     pub(super) fn on_page(&self, caption: &str) -> barrelstack_report::Table {
         super::page::table(caption, &self.rows)
     }

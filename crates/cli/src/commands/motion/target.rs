@@ -47,8 +47,8 @@ fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
 /// Reads the rows of a table of periods (s) and accelerations (m/s²); the table may have further
 /// columns.
 ///
-/// The header states the unit of the accelerations. The part of the header after the unit is passed
-/// to `behind`, with its position.
+/// The header states the unit of the accelerations. `behind` is called with the position of the header
+/// (file and line) and with the text that follows the unit.
 pub(super) fn rows<const N: usize>(
     path: &Path,
     columns: &str,

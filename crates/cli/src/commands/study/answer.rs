@@ -30,7 +30,7 @@ pub(crate) struct Answer {
     unit: String,
 }
 
-/// Maximum number of levels, and of reasons, that are listed individually.
+/// Maximum number of different levels, collapse modes or errors that are counted individually.
 const MOST: usize = 30;
 
 impl Answer {
@@ -64,8 +64,10 @@ impl Answer {
         }
     }
 
-    /// Returns the levels that several cases share, in ascending order; empty if the levels are
-    /// drawn at random.
+    /// Returns the levels with their counts by outcome, in ascending order.
+    ///
+    /// The list is empty if there is only one level or more than `MOST`, or if there are fewer than two cases per
+    /// level on average, as for levels that are drawn at random.
     fn levels(&self) -> Vec<(f64, Tally)> {
         let mut levels = self.levels.clone();
         levels.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -75,10 +77,10 @@ impl Answer {
     }
 }
 
-/// Name under which all further reasons are counted.
+/// Name under which all collapse modes, or all errors, beyond the first `MOST` different ones are counted.
 const OTHERS: &str = "others";
 
-/// Sorts counts in descending order, with the entry for all other reasons last.
+/// Sorts the counts of collapse modes or errors in descending order, with the entry [`OTHERS`] last.
 fn sorted(counts: &BTreeMap<String, usize>) -> Vec<(&str, usize)> {
     let mut counts: Vec<(&str, usize)> = counts.iter().map(|(k, n)| (k.as_str(), *n)).collect();
     counts.sort_by_key(|(name, count)| (*name == OTHERS, Reverse(*count), *name));
@@ -94,7 +96,7 @@ fn collapse(tally: &Tally, provenance: &Provenance) -> Option<String> {
     Some(format!("  {} of {} collapse{share}", tally.collapsed, tally.judged))
 }
 
-/// Returns the summary as text.
+/// Formats the summary as lines of text.
 pub(super) fn lines(answer: &Answer, provenance: &Provenance, folder: &Path) -> Vec<String> {
     let tally = answer.tally;
     let mut lines = vec![provenance.title.clone()];

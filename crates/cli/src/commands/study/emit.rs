@@ -54,7 +54,7 @@ fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }
 
-/// Returns an absolute path, because jobs start in other folders.
+/// Makes a path absolute, because jobs start in other folders.
 fn absolute(path: &Path) -> anyhow::Result<String> {
     let whole = std::path::absolute(path)
         .with_context(|| format!("cannot find the absolute path of {}", path.display()))?;
@@ -70,7 +70,8 @@ struct Job {
 }
 
 impl Job {
-    /// Returns the shell command that runs a chunk; the number of the chunk is given as shell text.
+    /// Returns the shell command that runs a chunk. `number` is inserted without quoting, so that it may be a shell
+    /// variable or a placeholder.
     fn chunk(&self, number: &str) -> String {
         let [program, study, out] = [&self.program, &self.study, &self.out].map(|w| quoted(w));
         format!("{program} study run-chunk {study} --chunk {number} --out {out}")

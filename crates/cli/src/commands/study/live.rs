@@ -17,7 +17,8 @@ use crate::progress::{Bar, Lines, Of, style};
 pub(super) struct Live {
     bar: Bar,
     lines: Lines,
-    /// `true` if the cases are a sample, so that the share of cases that collapse is meaningful.
+    /// `true` if the cases are a sample of the stated distributions, so that the share of collapsed cases estimates
+    /// the probability of collapse.
     sample: bool,
     interrupt: Interrupt,
     damaged: AtomicUsize,
@@ -33,16 +34,18 @@ pub(super) struct Waiting {
     state: Mutex<Option<(usize, Instant, bool)>>,
 }
 
-/// Waiting time before the holder is reported.
+/// Time to wait for a chunk before the process that holds the chunk is reported.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 impl Waiting {
-    /// Watches the chunks of a folder.
+    /// Creates the state for the study in a folder; no wait has started.
     pub(super) fn new(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), state: Mutex::new(None) }
     }
 
-    /// Updates the awaited chunk, if any; called many times per second.
+    /// Takes the chunk for which this process waits, and reports its holder once the wait exceeds `PATIENCE`.
+    ///
+    /// `None` changes nothing. This function is called many times per second.
     pub(super) fn at(&self, chunk: Option<usize>) {
         let Ok(mut state) = self.state.lock() else { return };
         let Some(chunk) = chunk else { return };
@@ -62,7 +65,7 @@ impl Waiting {
     }
 }
 
-/// Formats a time for display, such as "40 s", "12 min" or "3 h".
+/// Formats a duration for display, such as "40 s", "12 min" or "3 h".
 fn age_in_words(age: Duration) -> String {
     match age.as_secs() {
         seconds @ ..120 => format!("{seconds} s"),
@@ -96,7 +99,7 @@ impl Live {
         self.damaged.load(Ordering::Relaxed)
     }
 
-    /// `true` if the manifest was damaged and has been rewritten.
+    /// Returns `true` if the manifest was damaged and has been rewritten.
     pub(super) fn manifest_healed(&self) -> bool {
         self.healed.load(Ordering::Relaxed)
     }

@@ -19,8 +19,8 @@ impl RecordData<'_> {
     /// Returns the file that contains the horizontal component with the index `horizontal`, and the
     /// channel of the component in this file, such as `#1` for the first channel.
     ///
-    /// `None` if several files have several channels each, because a file name then does not
-    /// identify a channel.
+    /// `None` if there is no such component. Also `None` if the record has several files, but not one
+    /// file per channel, because the file of a channel is then unknown.
     fn place(&self, horizontal: usize) -> Option<(String, String)> {
         let (paths, channels) = (self.source.paths(), &self.worked.record.channels);
         let flat = channels.iter().enumerate().filter(|(_, channel)| !channel.is_vertical());
@@ -34,7 +34,7 @@ impl RecordData<'_> {
     }
 }
 
-/// A column, with the value of the column in a row.
+/// A column, and the value of one row in this column, if any.
 type Cell = (ColumnSpec, Option<Value>);
 
 fn spec(name: String, unit: &str, role: Role, kind: ValueKind) -> ColumnSpec {
@@ -173,7 +173,8 @@ fn component(cells: &mut Vec<Cell>, place: &str, measured: Option<&MeasuredCompo
     cells.push(number(of("fiv3_1s"), "m/s", im, measured.map(|m| m.fiv3)));
 }
 
-/// Adds the pulse class (1 or 0), the pulse indicator, and the pulse period.
+/// Adds the pulse class (1 or 0), the pulse indicator, and the pulse period. The column names end with `how`, which
+/// names the method of classification and, for a single component, the component.
 fn pulse(cells: &mut Vec<Cell>, how: &str, pulse: Option<&ClassifiedPulse>) {
     let im = Role::Intensity;
     cells.push(integer(format!("pulse_{how}"), pulse.map(|p| usize::from(p.pulse_like))));

@@ -54,7 +54,7 @@ impl Inner {
     }
 }
 
-/// Position of the last line of a record.
+/// Fingerprint of the files of a record, `true` if the record was measured, and the position (bytes) of its last line.
 #[derive(Clone, Copy)]
 struct Line {
     hash: u64,
@@ -63,7 +63,7 @@ struct Line {
 }
 
 impl Journal {
-    /// Opens the journal of a folder, or creates a journal.
+    /// Opens the journal of a folder, or creates it.
     ///
     /// If the last line is incomplete, as after a killed process, its record counts as unfinished.
     pub(super) fn open(out: &Path, settings: &str, specs: &[ColumnSpec]) -> anyhow::Result<Self> {
@@ -175,7 +175,8 @@ impl JournalEntry {
         line
     }
 
-    /// Parses a line; `None` if its fingerprint or its values do not match.
+    /// Parses a line. Returns `None` if its fingerprint does not match the rest of the line, or if its values do not
+    /// match the columns.
     fn of(found: &serde_json::Value, specs: &[ColumnSpec]) -> Option<Self> {
         let mut bare = found.clone();
         let stated = bare.as_object_mut()?.remove("line")?;

@@ -35,7 +35,7 @@ const PERIODS: [f64; 20] = [
 ];
 /// Maximum number of refused files listed on the terminal; refused.csv lists all of them.
 const NAMED: usize = 5;
-/// Tables of a folder of records.
+/// File names of the tables that are written for a folder of records.
 const TABLES: [&str; 2] = ["records.csv", "refused.csv"];
 
 /// Options for folders.
@@ -93,7 +93,7 @@ pub(super) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// Creates a batch that only measures records, with the periods of the options.
+    /// Creates a batch that only measures records. The periods of the spectra are those of the folder options.
     pub(super) fn new(
         input: &'a Input,
         out: &'a Path,
@@ -141,7 +141,8 @@ pub(super) struct Measurements {
 enum Done {
     /// The record is in the journal.
     Noted,
-    /// Refused files with reasons that may be temporary; the next command processes the record again.
+    /// Refused files, with reasons that may be temporary. The record is not in the journal, so the next run of the
+    /// command processes it again.
     Unsure(Vec<(String, String)>),
     /// The command was stopped before this record was finished.
     Stopped,
@@ -152,8 +153,8 @@ enum Done {
 /// The files are `records.csv`, `records.parquet`, and `refused.csv` with the reasons.
 ///
 /// Each finished record is added to `rows.jsonl`, with the fingerprint of the bytes of its files.
-/// After an interruption, the same command continues the work, and repeats records whose files have
-/// changed.
+/// After an interruption, the same command continues the work. It processes records again if their
+/// files have changed.
 pub(super) fn run(
     batch: &Batch<'_>,
     work: &(dyn Fn(&Source, &Record) -> anyhow::Result<Worked> + Sync),
@@ -277,7 +278,8 @@ impl Measurements {
     }
 }
 
-/// Returns a fingerprint of the contents of all files of a record; an unreadable file counts as empty.
+/// Returns a fingerprint of the contents of all files of a record. A file that cannot be read contributes a zero in
+/// place of its own fingerprint.
 fn fingerprint_of(source: &Source) -> u64 {
     let mut all = Vec::new();
     for path in source.paths() {
@@ -290,7 +292,8 @@ fn fingerprint_of(source: &Source) -> u64 {
 /// Reads, processes and measures one record.
 ///
 /// Files that cannot be read, and records that cannot be processed, are refused with the reason.
-/// Failures that may be due to the disk are not final; the next command processes these records again.
+/// Returns the journal entry, and `true` if the entry is final. It is not final if `work` fails, because the cause may
+/// be the disk; the next run of the command then processes the record again.
 fn entry(
     input: &Input,
     source: &Source,
@@ -346,7 +349,7 @@ fn flatfile(path: &Path) -> anyhow::Result<(Flatfile, u64)> {
     Ok((Flatfile::parse(&path.display().to_string(), &text)?, fnv1a(&bytes)))
 }
 
-/// Describes the stage and the processing of a record; raw records are processed before they are
+/// Returns the stage of a record, and a description of the processing that is applied to a raw record before it is
 /// measured.
 fn stage_of(worked: &Worked) -> (String, &'static str) {
     let processing = match (worked.record.stage, worked.before.is_none()) {

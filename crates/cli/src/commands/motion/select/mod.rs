@@ -165,7 +165,9 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
 /// Default size of a set.
 const USUAL_COUNT: usize = 30;
 
-/// Returns a set of the default size, or the largest set that the candidates allow.
+/// Selects the largest set of records, up to the default size, for which the selection succeeds.
+///
+/// If the selection fails for every size, the error is that of the first attempt.
 fn as_many_as_there_are(
     target: &SelectionTarget,
     candidates: &[Candidate],

@@ -24,13 +24,13 @@ impl Set<'_> {
         self.selection.chosen.iter().map(|chosen| (self.rows[chosen.candidate], chosen))
     }
 
-    /// Returns text from the table.
+    /// Returns the text in a cell of the table of candidates; empty if there is none.
     pub(super) fn text(&self, column: &str, row: usize) -> &str {
         let texts = self.table.texts(column).unwrap_or_default();
         texts.get(row).and_then(Option::as_deref).unwrap_or_default()
     }
 
-    /// Returns a number from the table.
+    /// Returns the number in a cell of the table of candidates; `None` if there is none.
     pub(super) fn number(&self, column: &str, row: usize) -> Option<f64> {
         self.table.numbers(column)?.get(row).copied().flatten()
     }
