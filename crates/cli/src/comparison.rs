@@ -1,10 +1,10 @@
-//! The command line that compares the stack as it is with the stack after the smallest sufficient change (the remedy).
+//! The command line that compares the unchanged stack with the stack after the smallest sufficient change (the remedy).
 
 use barrelstack::variants::Remedy;
 
 use crate::args::{ScenarioArgs, VariantArgs};
 
-/// Arguments of the run of the stack as it is. The command line of the comparison is built from them.
+/// Command-line arguments of the run of the unchanged stack. The command line of the comparison is built from them.
 pub(crate) struct Command<'a> {
     scenario: &'a ScenarioArgs,
     variants: VariantArgs,
@@ -15,10 +15,10 @@ impl<'a> Command<'a> {
         Self { scenario, variants }
     }
 
-    /// Returns the command line that compares the stack with each sufficient change that one option can
-    /// express.
+    /// Returns the command line that compares the unchanged stack with the stack after each sufficient change. Only
+    /// changes that a single `--against` option can express are included.
     ///
-    /// `None` if there is no such change, or if the scenario was read from standard input.
+    /// Returns `None` if there is no such change, or if the scenario was read from standard input.
     pub(crate) fn against(&self, found: &Remedy) -> Option<String> {
         let ScenarioArgs { scenario, set, record } = self.scenario;
         let all = [&found.height, &found.straps].into_iter().flatten();

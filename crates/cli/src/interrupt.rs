@@ -39,17 +39,19 @@ const KEEPING: Duration = Duration::from_secs(30);
 /// Exit status of an interrupted program.
 pub(crate) const STATUS: u8 = 130;
 
-/// Access to the stop request.
+/// Handle through which a piece of work polls for stop requests.
 pub(crate) struct Interrupt;
 
-/// Number of pieces of work that have started to listen.
+/// Number of pieces of work that have started to listen for stop requests.
 static WORKS: AtomicUsize = AtomicUsize::new(0);
 
 /// Point of the work at which a test stops the program.
 static STOP_POINT: OnceLock<Option<StopPoint>> = OnceLock::new();
 
-/// A point in the work of the program, independent of the machine load: `2:runs:3` is reached
-/// when three runs are finished in the second piece of work.
+/// Point of the work at which a test stops the program. Unlike a time, it does not depend on the
+/// load of the machine.
+///
+/// The point `2:runs:3` is reached when three runs of the second piece of work are finished.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StopPoint {
     work: usize,
@@ -136,8 +138,8 @@ pub(crate) fn has_stopped() -> bool {
     STOPPED.load(Ordering::Relaxed)
 }
 
-/// Marks all work as finished. Its results are then being written, which a first signal does not
-/// interrupt.
+/// Records that all work is finished and that its results are being written. A first signal then
+/// leaves the time [`KEEPING`] to write them.
 pub(crate) fn finished() {
     FINISHED.store(true, Ordering::Relaxed);
 }
@@ -159,8 +161,8 @@ pub(crate) fn writes_to(folder: &Path) {
     }
 }
 
-/// Error of work that stopped on request; a message about the kept results has already been
-/// printed.
+/// Error that work returns when it has stopped on request. A message about the kept results has
+/// already been printed.
 #[derive(Debug)]
 pub(crate) struct Stopped;
 

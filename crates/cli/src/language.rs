@@ -28,7 +28,7 @@ impl LanguageArgs {
         self.language.into()
     }
 
-    /// Returns a document in the language.
+    /// Translates a document to the selected language.
     pub(crate) fn page(self, document: &Document) -> Document {
         document.in_language(self.of())
     }

@@ -129,7 +129,7 @@ pub(crate) fn stopped(json: bool) {
     error_document(&ErrorDocument::of(&(&words, None, None, STATUS)), json);
 }
 
-/// Prints the document of an error if documents are requested and none was printed yet.
+/// Prints an error as a JSON document, if `json` is `true` and no document was printed yet.
 fn error_document(document: &ErrorDocument, json: bool) {
     if json && !PRINTED.load(Ordering::Relaxed) {
         // If standard output is closed, standard error has the message.

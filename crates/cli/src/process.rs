@@ -24,9 +24,10 @@ mod before_main {
     /// Error number for a descriptor that is not open (EBADF).
     const NOT_OPEN: i32 = 9;
 
-    /// The signal for a file beyond the size limit (SIGXFSZ), and the handler that ignores it
-    /// (`SIG_IGN`).
+    /// Number of the signal for a file that exceeds the size limit (SIGXFSZ).
     const FILE_TOO_LARGE: i32 = 25;
+
+    /// Handler that ignores a signal (`SIG_IGN`).
     const IGNORE: usize = 1;
 
     // SAFETY: declared as in <signal.h>; a handler is an address.

@@ -16,10 +16,11 @@ use crate::printer;
 /// Interval between lines if the output is not a terminal.
 const EVERY: Duration = Duration::from_secs(5);
 
-/// Time before an estimate of the total time is shown.
+/// Time that must be spent on work before its remaining time is predicted.
 const LOOKED_AT: Duration = Duration::from_secs(1);
 
-/// Share of the work that must be finished before an estimate is shown; after the time [`EVERY`], less is enough.
+/// Share of a run that must be finished before its remaining time is predicted. After the time [`EVERY`], no minimum
+/// share is required.
 const SHARE: f64 = 0.02;
 
 /// Number of runs that must be finished before the time of the other runs is predicted; half of all runs is enough if
@@ -56,7 +57,7 @@ impl Drop for Bar {
 }
 
 impl Progress {
-    /// Starts the display, which shows something only if requested.
+    /// Starts the display; nothing is shown if `show` is `false`.
     pub(crate) fn new(show: bool) -> Self {
         let bar = Bar::new(show, || {
             let bar = ProgressBar::new_spinner().with_style(style("{spinner} {msg}"));
@@ -191,8 +192,8 @@ fn left(work: Work, open: f64, all: f64) -> Option<f64> {
     Some((shaking + settling) / (work.shaking + work.settling))
 }
 
-/// Lines printed if the output is not a terminal: first an estimate of the total time, then the
-/// progress every few seconds.
+/// Progress display for output that is not a terminal. It prints lines: first an estimate of the
+/// total time, then the progress every few seconds.
 pub(crate) struct Lines {
     /// State of the lines; `None` if no lines are requested.
     last: Option<Mutex<LastLine>>,
@@ -202,18 +203,19 @@ pub(crate) struct Lines {
 struct LastLine {
     /// Time of the last line.
     last: Instant,
-    /// `true` if the total time was printed or cannot be known.
+    /// `true` if an estimate of the total time was printed or is not possible.
     whole: bool,
     /// Time at which this work, or this part of it, started, and the amount that was finished at
     /// that time. That amount comes from an earlier run, so it is excluded from the estimate.
     start: Option<(Instant, f64, Work)>,
-    /// Amount finished at the last report, and the total.
+    /// Amount that was finished at the last report.
     done: f64,
+    /// Total amount at the last report.
     of: f64,
 }
 
 impl Lines {
-    /// Starts the display, which prints only if requested and only if the output is not a terminal.
+    /// Starts the display. Lines are printed only if `show` is `true` and the output is not a terminal.
     pub(crate) fn new(show: bool) -> Self {
         let line = LastLine { last: Instant::now(), whole: false, start: None, done: 0.0, of: 0.0 };
         let wanted = show && !std::io::stderr().is_terminal();
@@ -227,7 +229,8 @@ impl Lines {
         }
     }
 
-    /// Reports the progress of work of unknown length.
+    /// Reports the progress of work of unknown length: prints the text that `words` returns, if the last line was
+    /// printed more than [`EVERY`] ago.
     fn now_and_then(&self, words: impl Fn() -> String) {
         let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) else { return };
         if line.last.elapsed() > EVERY {
@@ -236,7 +239,8 @@ impl Lines {
         }
     }
 
-    /// Reports the progress of work with a known total.
+    /// Reports that the amount `done` of the total `of` is finished. If it is time for a line, prints an estimate of
+    /// the total time, or the text that `words` returns.
     pub(crate) fn at(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) {
         let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) else { return };
         // If the amount decreases by more than half, the next part has started. A smaller decrease comes from another
@@ -272,7 +276,7 @@ pub(crate) fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_spinner())
 }
 
-/// Converts a value to the unit of the bar.
+/// Converts an amount of work to thousandths, the integer unit of the progress bar.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -282,7 +286,7 @@ fn thousandths(value: f64) -> u64 {
     (1e3 * value) as u64
 }
 
-/// Formats a time for display.
+/// Formats a duration in whole seconds, minutes or hours.
 fn rounded(time: Duration) -> String {
     match time.as_secs() {
         seconds @ 0..90 => format!("{} s", seconds.max(1)),
@@ -318,7 +322,8 @@ mod tests {
         lengths.iter().map(run).collect()
     }
 
-    /// Returns the time (s) of the first estimate, and the total time (s) that the estimate states.
+    /// Returns the time (s) of the first estimate, and the total time (s) that it predicts. `known` states whether the
+    /// simulated time of the runs is known.
     fn first(runs: &[Timed], known: bool) -> Option<(f64, f64)> {
         let all = runs.iter().map(|run| run.end).fold(0.0, f64::max);
         let times = (1..).map(|tenth| 0.1 * f64::from(tenth));

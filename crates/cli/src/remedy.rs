@@ -9,7 +9,7 @@ use barrelstack::ground::GroundError;
 use barrelstack_campaign::study::StudyError;
 use barrelstack_motion::{MotionError, Refusal};
 
-/// Returns the advice after an error, if one option helps.
+/// Returns the advice to print after an error; `None` if there is no advice for this error.
 pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
     error.chain().find_map(|cause| {
         if let Some(ExportError::Occupied { .. }) = cause.downcast_ref() {

@@ -46,7 +46,7 @@ pub(crate) fn writable(folder: &Path) -> anyhow::Result<()> {
     })
 }
 
-/// Converts a system error to an error in plain words.
+/// Converts an I/O error to an error whose message helps the user to act on it.
 #[expect(clippy::needless_pass_by_value, reason = "used with map_err")]
 pub(crate) fn plain(error: std::io::Error) -> anyhow::Error {
     anyhow!(system::words(&error))

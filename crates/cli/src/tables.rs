@@ -43,7 +43,7 @@ impl TableArgs {
         }
     }
 
-    /// Returns the files of a folder, with the workbook and with CSV files in the requested notation.
+    /// Converts the CSV files among `files` to the requested notation, and appends the workbook if it is requested.
     pub(crate) fn of(
         self,
         mut files: Vec<(String, Vec<u8>)>,
@@ -97,8 +97,8 @@ pub(crate) fn write_one(path: &Path, csv: &str) -> anyhow::Result<()> {
     store(path, &book.with_context(|| format!("cannot write {}", path.display()))?)
 }
 
-/// Returns a workbook with a sheet for each CSV file among the files of a folder, and a sheet with the provenance,
-/// which the JSON files state.
+/// Returns a workbook with a sheet for each CSV file among `files`, and a provenance sheet with the contents of the
+/// JSON files.
 fn workbook(files: &[(String, Vec<u8>)]) -> anyhow::Result<Vec<u8>> {
     let of = |ending| files.iter().filter(move |(name, _)| has_ending(name, ending));
     let documents: Vec<String> = of("json").map(|(_, bytes)| text(bytes)).collect();
@@ -126,8 +126,8 @@ fn book(_: &[(&str, &str)]) -> anyhow::Result<Vec<u8>> {
     bail!("{WITHOUT}")
 }
 
-/// Returns one pair of label and text for the sheet with the provenance: name, version and commit of the program that
-/// writes the workbook.
+/// Returns the row of the provenance sheet that states the name, version and commit of this program, as a label and a
+/// text.
 fn facts() -> Vec<(String, String)> {
     let commit = env!("BARRELSTACK_COMMIT");
     let of = if commit.is_empty() { String::new() } else { format!(", commit {commit}") };

@@ -1,9 +1,9 @@
-//! Closed sets of values as command-line arguments.
+//! Enums as command-line arguments.
 
 use clap::ValueEnum;
 
-/// Declares, for the members of a closed set, the words that the command line accepts and their
-/// help.
+/// Declares an enum of the words that a command-line argument accepts, and its conversion to the
+/// type of the values for which the words stand. The doc comment of a variant is the help of its word.
 macro_rules! typed {
     (
         $(#[$about:meta])*
@@ -29,7 +29,7 @@ macro_rules! typed {
 
 pub(crate) use typed;
 
-/// Returns the command-line word for a member of a closed set.
+/// Returns the word that stands for an enum variant on the command line.
 pub(crate) fn word(member: impl ValueEnum + Copy) -> String {
     member.to_possible_value().map_or_else(String::new, |word| word.get_name().to_owned())
 }

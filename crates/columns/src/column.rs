@@ -106,7 +106,7 @@ pub enum Values {
     Integer(Vec<Option<i64>>),
     /// Numbers in SI units.
     Number(Vec<Option<f64>>),
-    /// Texts.
+    /// Strings.
     Text(Vec<Option<String>>),
 }
 
@@ -153,10 +153,10 @@ impl Values {
         }
     }
 
-    /// Appends values of the same type.
+    /// Appends the values of `more`, which must have the type of this column.
     ///
     /// # Errors
-    /// If the values have a different type.
+    /// If the types differ.
     pub fn append(&mut self, more: Self) -> Result<(), String> {
         match (self, more) {
             (Self::Integer(values), Self::Integer(more)) => values.extend(more),

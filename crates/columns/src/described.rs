@@ -82,10 +82,10 @@ impl<K: Ord, T: Described> Described for BTreeMap<K, T> {
 /// list in Rust) are written as zero.
 ///
 /// # Errors
-/// For maps with keys other than text.
+/// If the document contains a map whose keys are not strings.
 pub fn to_json(document: &impl Serialize) -> serde_json::Result<String> {
     let text = serde_json::to_string_pretty(document)?;
-    // Only a number can end a line with `-0.0`, because a text ends with a quotation mark.
+    // Only a number can end a line with `-0.0`, because a string ends with a quotation mark.
     let plain = |line: &str| match line.strip_suffix("-0.0").or_else(|| line.strip_suffix("-0.0,"))
     {
         Some(before) if before.is_empty() || before.ends_with(' ') => {
@@ -105,7 +105,7 @@ pub struct Field {
     pub meaning: &'static str,
     /// Unit; `None` if the field has no unit.
     pub unit: Option<&'static str>,
-    /// Permitted values of a text field; empty if any text is permitted.
+    /// Permitted values of a string field; empty if any string is permitted.
     pub words: &'static [&'static str],
     /// Serialization attribute: `flatten` merges the fields of the value into the object, `skip`
     /// omits the field.
@@ -175,7 +175,7 @@ pub fn document<T: Described>(title: &str) -> Value {
     schema
 }
 
-/// Lists every field of a document with key, unit and meaning.
+/// Returns key, unit and meaning of every field of a document, given its schema from [`document`].
 ///
 /// Fields of list items have `[]` after the key of the list; fields of maps with arbitrary keys
 /// have `.*` in place of the key. An object that contains objects of its own type is listed once.
@@ -190,7 +190,7 @@ pub fn dictionary(document: &Value) -> Vec<[String; 3]> {
     walk.rows
 }
 
-/// Traversal of a schema.
+/// State of the traversal of a schema.
 struct Walk<'a> {
     objects: &'a Objects,
     /// The objects that enclose the current position.

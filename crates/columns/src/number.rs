@@ -98,7 +98,8 @@ pub fn shortest(value: f64) -> String {
     if exponent.len() < plain.len() { exponent } else { plain }
 }
 
-/// Units that may follow a number, or begin a compound unit such as `cm/s`.
+/// Units that [`tied`] keeps on the line of the number before them, alone or as the first part of a compound unit such
+/// as `cm/s`.
 const UNITS: [&str; 30] = [
     "%", "m", "cm", "mm", "µm", "nm", "km", "in", "ft", "s", "ms", "µs", "min", "h", "g", "kg",
     "t", "N", "kN", "MN", "Pa", "kPa", "MPa", "J", "kJ", "Hz", "deg", "rad", "L", "1",

@@ -61,10 +61,11 @@ impl<S: Space> Applied<S> {
 }
 
 impl<S: Space<Real = f64>> Applied<S> {
-    /// Stores this force in the list `all`, which contains at most one force for each body; an earlier force on the
-    /// same body is replaced. If force and moment are zero, the entry of the body is removed.
+    /// Stores this force in `all`, the list of the applied forces, which contains at most one force for each body. An
+    /// earlier force on the same body is replaced. If this force and its moment are zero, the earlier force is removed
+    /// instead.
     ///
-    /// Returns the index of the body's force in the old list and in the new list.
+    /// Returns the index of the body's force in the list before and after the change; `None` if there is no such force.
     pub(crate) fn replace(
         self,
         model: &Model<S>,

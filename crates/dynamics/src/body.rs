@@ -72,10 +72,14 @@ pub struct Round<S: Space> {
 /// A flat piece of boundary with nodes, stored as a plane in the frame of its body.
 ///
 /// A contact at the face may be found twice: by testing the nodes of the face, and by testing the exact boundary
-/// ([`Round`]). The position of the other body relative to the plane decides which of the two contacts counts. For a
-/// round body, it is the contact of the nodes if the center of the body is in front of the plane, and the exact contact
-/// if the center is behind the plane. For other bodies, whose edges may extend past the face, the direction of the
-/// contact decides as well.
+/// ([`Round`]). Only one of the two contacts counts:
+///
+/// - If the center of mass of the other body is behind the plane, the exact contact counts.
+/// - If it is in front of the plane, the contact of the nodes counts, provided that its outward normal is within the
+///   angle from `outward` that [`Face::widest`] permits. Otherwise the exact contact counts.
+///
+/// A face that carries a round body permits every direction. A face that carries other bodies, whose edges may extend
+/// past the face, limits the angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face<S: Space> {
     /// A point of the face (m), relative to the center of mass.

@@ -1,9 +1,9 @@
 //! List of the contact elements that could touch soon, with their contact history.
 //!
 //! A contact element is a node of a contactor and the surface of a target. The list contains only the elements within
-//! reach; it is rebuilt before any body can have moved far enough for a missing element to touch. The list affects only
-//! the speed of the computation: the forces are bit-identical to those of a computation that tests every node in every
-//! step.
+//! reach; it is rebuilt before any body can have moved far enough for an element outside the list to touch. The list
+//! affects only the speed of the computation: the forces are bit-identical to those of a computation that tests every
+//! node in every step.
 
 use crate::body::{Body, BodyId, Motion, Nodes, Round};
 use crate::contact::Stick;
@@ -47,7 +47,7 @@ pub(crate) struct Group {
 }
 
 /// Slack (m) that is added to the displacements predicted for a step, since velocities change within the step. A group
-/// is skipped if its gap exceeds the sum.
+/// is skipped if its gap exceeds the sum of the displacements of its two bodies and the slack.
 const ASLEEP_SLACK: f64 = 2.0 * LOOKAHEAD_SLACK;
 
 /// The contact elements within reach, in the order in which their forces are summed.
@@ -131,8 +131,9 @@ impl<S: Space> ContactElements<S> {
         self.rebuild(model, poses, &vec![Twist::default(); poses.len()]);
     }
 
-    /// Rebuilds the list if a missing element could touch now or within `dt` (s); if the list was rebuilt, returns the
-    /// origins as [`ContactElements::rebuild`] does.
+    /// Rebuilds the list if an element outside the list could touch now or within `dt` (s).
+    ///
+    /// Returns the origins that [`ContactElements::rebuild`] returns; `None` if the list was not rebuilt.
     pub(crate) fn refresh(
         &mut self,
         model: &Model<S>,
@@ -315,8 +316,8 @@ impl<S: Space> ContactElements<S> {
     /// Returns `true` if no lane can have a contact before the list is rebuilt, because in every lane the surface
     /// remains deeper in the round piece than [`Round::greatest_depth`].
     ///
-    /// The center of an arc may lie far outside its body; as the body turns, the center then moves farther than the
-    /// body.
+    /// The center of an arc may lie far outside its body. When the body turns, such a center may move farther than the
+    /// allowance of the body, so a larger bound is used for it.
     #[inline(always)]
     fn behind(
         &self,
@@ -529,8 +530,8 @@ impl<S: Space> ContactElements<S> {
         }
     }
 
-    /// Returns the contact history of the elements that touch in one lane. The returned list must be rebuilt before it
-    /// is used in a single run.
+    /// Returns a list with the contact history of one lane; the history of elements that do not touch in this lane is
+    /// empty. The list lacks the other data of the elements, so it must be rebuilt before it is used in a single run.
     pub(crate) fn of_lane(
         &self,
         lane: usize,
@@ -547,8 +548,8 @@ impl<S: Space> ContactElements<S> {
 
 /// Returns the allowance (m) of each body: the displacement that is permitted before the list is rebuilt.
 ///
-/// The allowance grows with the speed of the body in the fastest lane. The speed is relative to the ground, since the
-/// motion of the ground moves all bodies together.
+/// The allowance grows with the largest speed of the body over all lanes. The speed is relative to the ground, since
+/// the motion of the ground moves all bodies together.
 fn allowances<S: Space>(model: &Model<S>, twists: &[Twist<S>]) -> Vec<f64> {
     let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
     let carrier = ground.map_or_else(S::Vector::default, |ground| twists[ground].linear);

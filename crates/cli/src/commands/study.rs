@@ -353,7 +353,7 @@ fn status(args: &FolderArgs) -> anyhow::Result<()> {
     printer::lines(answer::status(&status))
 }
 
-/// Reads the results in the shards of a folder and their provenance, and writes the table.
+/// Reads the results and the provenance of the finished chunks in a folder, and writes the table.
 fn collected(folder: &Path) -> Result<(answer::Answer, study::Provenance), StudyError> {
     let mut answer = answer::Answer::default();
     let made = study::collect(folder, &mut |_, rows| {

@@ -22,10 +22,10 @@ pub enum Basis {
     Node,
     /// Constants per meter of boundary (N/m², N·s/m²).
     Length,
-    /// Constants per seat (N/m, N·s/m). A seat is a place where two bodies touch, or a whole row of nodes on one
-    /// surface.
+    /// Constants per seat (N/m, N·s/m). A seat is a place where two bodies touch. A row of nodes that touch the same
+    /// surface is one seat.
     ///
-    /// The depth of a row is the depth of its deepest node, and the force of the row is divided among the nodes in
+    /// The depth of a row is the depth of its deepest node. The force of the row is divided among its nodes in
     /// proportion to their depths.
     Seat,
 }

@@ -69,9 +69,11 @@ impl<S: Space> Guide<S> {
         }
     }
 
-    /// Adapts a guide, after its position at rest has been set, to a first body that turns about the axis of the guide.
-    /// Only the component of `place` along the axis is kept, and `reach` is increased by the distance of the point from
-    /// the axis.
+    /// Returns the guide for a first body that may turn about the axis of the guide. The position at rest, `place`,
+    /// must have been set before.
+    ///
+    /// Only the component of `place` along the axis is kept, since the other components turn with the body. `reach` is
+    /// increased by the distance of the point from the axis.
     #[must_use]
     pub fn about_axis(self) -> Self {
         let along = self.axis * self.axis.dot(self.place);

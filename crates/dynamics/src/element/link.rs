@@ -77,7 +77,8 @@ impl<S: Space> Link<S> {
 }
 
 impl<S: Space> Line<S> {
-    /// Returns the unit vector from the first point to the second, in lanes where the distance is positive.
+    /// Returns the unit vector from the first point to the second in the lanes `counts`, where the distance must be
+    /// positive. In other lanes, the result is not a unit vector.
     #[inline(always)]
     pub(super) fn along(&self, counts: <S::Real as Real>::Mask) -> S::Vector {
         let one = S::Real::splat(1.0);
