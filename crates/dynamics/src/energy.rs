@@ -28,15 +28,14 @@ pub struct EnergySummary {
     pub viscous: f64,
     /// Work of the ground on the bodies.
     pub ground_work: f64,
-    /// Work of forces from outside the model.
+    /// Work of external forces.
     pub applied_work: f64,
-    /// Stored and lost energy, minus the initial energy, the work of the ground and the work of forces from outside;
-    /// zero for an exact integration.
+    /// Stored and lost energy, minus the initial energy, the work of the ground and the work of external forces; zero
+    /// for an exact integration.
     pub residual: f64,
-    /// Energy that has passed through the system so far: the absolute work of the ground and of forces from outside,
-    /// plus the energy available at the start. The latter is the sum of the kinetic energy, the energy of springs, and
-    /// the potential energy relative to its lowest value so far. The residual is stated as a fraction of the
-    /// throughput.
+    /// Energy that has passed through the system so far: the absolute work of the ground and of external forces, plus
+    /// the energy available at the start. The latter is the sum of the kinetic energy, the energy of springs, and the
+    /// potential energy relative to its lowest value so far. The residual is stated as a fraction of the throughput.
     pub throughput: f64,
 }
 
@@ -74,12 +73,12 @@ pub struct EnergyLedger<S: Space> {
     wrenches: Vec<Wrench<S>>,
     /// Plastic elongation and failure of the force elements at the last accepted step.
     memory: Vec<Memory<S>>,
-    /// Forces from outside the model at the last accepted step.
+    /// External forces at the last accepted step.
     pub(crate) applied: Vec<Wrench<S>>,
     /// Spring forces of the force elements at the last accepted step (N).
     springs: Vec<S::Real>,
     stored: Stored<S::Real>,
-    /// Sum, over all steps, of the absolute work of the ground and of forces from outside.
+    /// Sum, over all steps, of the absolute work of the ground and of external forces.
     flow: S::Real,
     deepest: S::Real,
 }
@@ -179,7 +178,7 @@ impl<S: Space> EnergyLedger<S> {
         self.deepest = self.deepest.min(self.stored.potential);
     }
 
-    /// Returns `true` if the kinetic and potential energy of every body is finite.
+    /// Returns the lanes in which the kinetic and the potential energy of every body are finite.
     #[inline(always)]
     pub(crate) fn finite(&self) -> <S::Real as Real>::Mask {
         (self.stored.kinetic + self.stored.potential).is_finite_mask()

@@ -85,12 +85,12 @@ pub struct ContactKind {
 pub struct Rule {
     /// `true` if the body of the second contact kind is the contactor.
     pub reversed: bool,
-    /// Index of the contact law among the interfaces of the first body's party, and its index among the interfaces of
-    /// the second body's party. The index of the party that supplies the contact law ([`Party::rank`]) is used.
+    /// Index of the contact law in the model of the first body's party, and in the model of the second body's party.
+    /// Only one index is used: that of the party that supplies the contact law ([`Party::rank`]).
     pub laws: [InterfaceId; 2],
 }
 
-/// Contacts between bodies of different parties, by their contact kinds.
+/// Rules for contacts between bodies of different parties, by the contact kinds of the bodies.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Crossing {
     /// The contact kinds.
@@ -103,11 +103,11 @@ pub struct Crossing {
 /// A party of a joined model: one of the runs that are joined.
 #[derive(Clone, Copy, Debug)]
 pub struct Party<'a> {
-    /// Name that precedes the names of the party's bodies in the joined model.
+    /// Prefix of the names of the party's bodies in the joined model, without the slash that follows it.
     pub name: &'a str,
     /// Model of the party before it is joined.
     pub model: &'a Model<Spatial>,
-    /// Contact kind of every body.
+    /// For every body, the index of its contact kind in [`Crossing::kinds`].
     pub kinds: &'a [usize],
     /// Rank of the party: where bodies of two parties touch, the party of lower rank supplies the contact law.
     pub rank: usize,
@@ -201,11 +201,11 @@ pub struct Source<'a> {
 /// Bodies and elements that are carried over.
 #[derive(Clone, Debug)]
 pub struct Carry {
-    /// Index of the source.
+    /// Index of the source in the list of sources.
     pub source: usize,
     /// The bodies in the source.
     pub bodies: Range<BodyId>,
-    /// ID that the first of these bodies has in the new model.
+    /// ID of the first of these bodies in the new model.
     pub to: BodyId,
     /// The elements in the source, which keep their order.
     pub elements: Range<usize>,
@@ -222,12 +222,13 @@ pub struct Running {
     pub stepper: Stepper<Spatial>,
 }
 
-/// Continues several runs, which must be at the same time, as one run of a new model. Motion, forces, contact history
-/// and the state of elements are copied from the sources. At times above zero, no force is evaluated again, so the next
-/// step of every body is the same as in its source.
+/// Continues several runs as one run of a new model. All runs must be at the same time.
 ///
-/// Bodies of the new model that no source contains must be prescribed. No force from outside the model may act in a
-/// source.
+/// Motion, forces, contact history and the state of elements are copied from the sources. At times above zero, the
+/// copied forces are kept, so the next step of every body is the same as in its source. At time zero, the forces are
+/// evaluated anew, since bodies of two sources may be pressed together from the start.
+///
+/// Bodies of the new model that no source contains must be prescribed. No external force may act in a source.
 ///
 /// # Panics
 /// If there is no source.

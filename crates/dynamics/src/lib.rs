@@ -22,8 +22,8 @@
 //!
 //! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians. In three dimensions,
 //!   `y` points away from the viewer and rotations are right-handed, so an angle of the plane is a rotation about `-y`.
-//! - A gap's distance is negative when penetrating; penetration is never negative.
-//! - Penetration rate is positive while approaching.
+//! - The distance of a gap is negative where the bodies penetrate each other; the penetration is never negative.
+//! - The penetration rate is positive while the bodies approach each other.
 //! - Normals point out of the target.
 //! - Slip is the motion of the contactor relative to the target; on a level floor it is positive to the right.
 //! - A friction force is given in the direction of the slip; the opposite force acts on the contactor.

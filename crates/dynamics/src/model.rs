@@ -24,15 +24,15 @@ pub struct ContactPair {
     pub target: BodyId,
     /// Index of the surface of the target.
     pub surface: usize,
-    /// Interface that states the contact laws of the pair.
+    /// Index of the interface that contains the contact laws of the pair.
     pub interface: InterfaceId,
     /// Filter that selects contacts by their position relative to a face.
     pub counts: Counts,
 }
 
-/// Filter that assigns each contact near a face to exactly one pair. One pair may test a face with the nodes of the
-/// face, and another pair may test the same face exactly. Without the filter, a contact found by both would be counted
-/// twice.
+/// Filter that assigns each contact near a face to exactly one pair. One pair may test the nodes of a face, and another
+/// pair may test the exact boundary at the same face. Without the filter, a contact found by both pairs would be
+/// counted twice.
 ///
 /// A contact belongs to the face if the other body's center of mass lies in front of the face and the angle between the
 /// normals of contact and face is within [`Face::widest`](crate::body::Face::widest).
@@ -60,26 +60,26 @@ pub const FORESEEN: f64 = 0.01;
 pub struct Substepping<R> {
     /// Number of substeps into which a time step is divided while an impact requires it; an integer, at least one.
     pub substeps: R,
-    /// For every interface, the largest penetration (m) that whole time steps resolve; infinite for no limit.
+    /// For every interface, the penetration (m) above which a time step is divided; infinite for no limit.
     pub whole_step_depth: Vec<R>,
-    /// Additional penetration (m) beyond [`whole_step_depth`](Self::whole_step_depth) that whole steps resolve for a
-    /// contact at rest: for such a contact, only stability limits the penetration, while impacts must also be accurate.
+    /// Amount (m) by which a contact at rest may exceed [`whole_step_depth`](Self::whole_step_depth) before a step is
+    /// divided. For a contact at rest, an undivided step must only be stable; for an impact, it must also be accurate.
     pub resting_allowance: R,
     /// Gap (m) below which impacts are predicted. If a larger gap closes within the lookahead, the impact is detected
     /// late. [`FORESEEN`] suits stacks.
     pub foreseen_gap: R,
-    /// Additional rules for fast contacts of whole bodies; `None` to disable them.
+    /// Additional rules for fast contacts of [`Nodes::Whole`]; `None` to disable them.
     pub fast: Option<Fast<R>>,
 }
 
-/// Additional substepping rules for fast contacts of whole bodies ([`Nodes::Whole`]).
+/// Additional substepping rules for fast contacts of [`Nodes::Whole`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fast<R> {
     /// Displacement (m) along the contact normal during a whole step, above which the step is divided. Otherwise the
     /// spring and the damper of the contact would engage or release too abruptly.
     pub whole_step_way: R,
-    /// Approach speed (m/s) above which an impact counts as hard; the substeps are then half as long until no impact
-    /// remains.
+    /// Approach speed (m/s) above which an impact counts as hard. After a hard impact, the substeps are half as long
+    /// until no substeps are needed anymore.
     pub hard: R,
 }
 
@@ -162,7 +162,7 @@ pub enum ModelError {
 impl<S: Space> Model<S> {
     /// Creates a model: checks bodies, interfaces and pairs, and sorts the pairs.
     ///
-    /// `gravity` is the acceleration of free fall (m/s²).
+    /// `gravity` is the gravitational acceleration (m/s²).
     ///
     /// # Errors
     /// If two bodies have the same name, if a free body has no mass, no inertia or an unbounded surface, or if a pair
@@ -178,8 +178,8 @@ impl<S: Space> Model<S> {
 
     /// Creates a model as [`Model::new`] does, with contact pairs that depend only on the kinds of the bodies.
     ///
-    /// `kinds` has the kind of every body, numbered from 0. `meet` returns the pairs of two bodies, of which the body
-    /// with the lower ID is given first; for any other two bodies of the same kinds, it must return equivalent pairs.
+    /// `kinds` has the kind of every body, numbered from 0. `meet` receives two bodies, the one with the lower ID
+    /// first, and returns their pairs. For any other two bodies of the same kinds, it must return equivalent pairs.
     ///
     /// No list of all pairs is stored, since its length would be quadratic in the number of bodies.
     ///
@@ -285,7 +285,7 @@ impl<S: Space> Model<S> {
         self.substepping = substepping;
     }
 
-    /// Returns the subdivision of steps during impacts.
+    /// Returns the rules for substeps during impacts.
     pub fn substepping(&self) -> &Substepping<S::Real> {
         &self.substepping
     }
@@ -323,13 +323,14 @@ impl<S: Space> Model<S> {
         self.pairs.numbers().map(|number| self.pairs.get(number))
     }
 
-    /// Returns the contact pair with the given number, such as [`Contact::pair`](crate::forces::Contact::pair).
+    /// Returns the contact pair with the index `number`; [`Contact::pair`](crate::forces::Contact::pair) is such an
+    /// index.
     #[inline(always)]
     pub fn pair(&self, number: usize) -> ContactPair {
         self.pairs.get(number)
     }
 
-    /// Returns the number of the first contact pair between different parties of a [joined](crate::join::joined) model.
+    /// Returns the index of the first contact pair between different parties of a [joined](crate::join::joined) model.
     pub fn first_foreign_pair(&self) -> usize {
         self.pairs.first_foreign()
     }
@@ -345,12 +346,12 @@ impl<S: Space> Model<S> {
         &self.elements
     }
 
-    /// Returns the acceleration of free fall (m/s²).
+    /// Returns the gravitational acceleration (m/s²).
     pub fn gravity(&self) -> S::Vector {
         self.gravity
     }
 
-    /// Sets the acceleration of free fall (m/s²).
+    /// Sets the gravitational acceleration (m/s²).
     pub fn set_gravity(&mut self, gravity: S::Vector) {
         self.gravity = gravity;
     }
@@ -365,13 +366,13 @@ impl<S: Space> Model<S> {
         self.inert.iter().any(|body| body.damped)
     }
 
-    /// Returns the body that supplies the boundaries of a body: the first body with equal boundaries.
+    /// Returns the body whose stored boundaries are used for `body`: the first body with equal boundaries.
     #[inline(always)]
     pub(crate) fn bounded(&self, body: BodyId) -> &Body<S> {
         &self.bodies[self.alike[body]]
     }
 
-    /// Returns the nodes that a pair tests.
+    /// Returns the node set of the contactor of a pair.
     pub(crate) fn pair_nodes(&self, pair: &ContactPair) -> &Nodes<S> {
         &self.bounded(pair.contactor).nodes[pair.nodes]
     }

@@ -83,12 +83,13 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => &mut element.link),* }
             }
 
-            /// Returns the largest stiffness (N/m) of the element between its two points.
+            /// Returns the stiffness (N/m) of the element, including the stiffness of its stops.
             pub fn stiffness(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.stiffness()),* }
             }
 
-            /// Returns the largest damping (N·s/m) of the element between its two points.
+            /// Returns the damping (N·s/m) of the element: the sum of the constants of its dampers, including those of
+            /// its stops.
             pub fn damping(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.damping()),* }
             }

@@ -15,7 +15,7 @@ use crate::state::State;
 pub struct Rod<S: Space> {
     /// The joined points.
     pub link: Link<S>,
-    /// Distance (m) between the points at which the rod is unloaded.
+    /// Length l (m): the distance between the points when the rod is unloaded.
     pub length: S::Real,
     /// Stiffness k (N/m).
     pub stiffness: S::Real,

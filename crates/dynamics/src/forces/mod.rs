@@ -14,7 +14,7 @@ use crate::state::State;
 
 use press::{PairKinematics, touch};
 
-/// A contact element that touches.
+/// A contact element that is in contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<S: Space> {
     /// Index of the element in [`ContactElements`].
@@ -23,7 +23,7 @@ pub struct Contact<S: Space> {
     pub pair: usize,
     /// Index of the node in the contactor's node set.
     pub node: u32,
-    /// The lanes in which the element touches; always `true` in a single run.
+    /// The lanes in which the element is in contact; always `true` in a single run.
     pub touching: <S::Real as Real>::Mask,
     /// Point (m) at which the force acts on both bodies, in the frame of the target's surface. For a fixed node, this
     /// is the companion point, the point of the surface from which the penetration is measured; otherwise, it is the
@@ -102,11 +102,11 @@ pub struct Scratch<S: Space> {
     pub totals: ContactTotals<S::Real>,
     /// Loads of the force elements, in the order of the elements.
     pub loads: Vec<Load<S::Real>>,
-    /// For every force from outside the model, in the order of [`State::applied`]: the force, and its moment about the
-    /// center of mass of the body.
+    /// For every external force, in the order of [`State::applied`]: the force, and its moment about the center of mass
+    /// of the body.
     pub applied: Vec<Wrench<S>>,
-    /// Total force on every body from contacts, elements and outside the model, and its moment about the center of
-    /// mass.
+    /// Total force on every body, and its moment about the center of mass: the sum of contact forces, element forces
+    /// and the external force.
     pub wrenches: Vec<Wrench<S>>,
     /// Dissipative forces on every body.
     pub losses: Vec<Losses<S>>,
@@ -143,7 +143,7 @@ pub struct Scratch<S: Space> {
     awake: Vec<usize>,
 }
 
-/// An element that touches in at least one lane.
+/// A contact element that is in contact in at least one lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressed<S: Space> {
     pub(crate) element: usize,
@@ -151,7 +151,7 @@ pub struct Pressed<S: Space> {
     pub pair: usize,
     /// Index of the node in the contactor's node set.
     pub node: u32,
-    /// The lanes in which the element touches.
+    /// The lanes in which the element is in contact.
     pub touching: <S::Real as Real>::Mask,
     /// Point (m) at which the force acts, in the frame of the target's surface.
     pub point: S::Vector,
@@ -208,7 +208,7 @@ impl<S: Space> Scratch<S> {
 }
 
 impl<S: Space> Scratch<S> {
-    /// Returns the number of elements that touch in at least one lane.
+    /// Returns the number of contact elements that are in contact in at least one lane.
     pub fn touching(&self) -> usize {
         self.pressed.len()
     }
@@ -250,9 +250,9 @@ pub fn evaluate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scra
     evaluate_within(model, state, S::Real::zero(), scratch);
 }
 
-/// Evaluates as [`evaluate`] does, but with the effective forces over a whole time step (s), for an integrator that
-/// treats forces as constant for half a step before and after their evaluation
-/// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)).
+/// Evaluates as [`evaluate`] does, but with normal forces that are effective over a whole time step of length `step`
+/// (s); see [`NormalForce::within_step`](crate::contact::NormalForce::within_step). The integrator must treat a force
+/// as constant from half a step before its evaluation to half a step after it.
 pub(crate) fn evaluate_within<S: Space>(
     model: &Model<S>,
     state: &State<S>,
@@ -315,7 +315,7 @@ fn asleep<S: Space>(
     elements.asleep(group, if foreseen { model.substepping.foreseen_gap } else { S::Real::zero() })
 }
 
-/// Adds the forces of the force elements, and the forces from outside the model.
+/// Adds the forces of the force elements, and the external forces.
 #[inline(always)]
 fn act<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     let Scratch { wrenches, losses, rotations, loads, applied, .. } = scratch;
@@ -459,8 +459,9 @@ fn commit_all<S: Space>(
     sticks[next..].fill(Stick::default());
 }
 
-/// Commits the contact history of the touching elements of a pair, and resets the contact history of the elements
-/// between them, which do not touch. `next` is the first element that is neither committed nor reset yet.
+/// Commits the contact history of the touching elements of a pair. `next` is the index of the first element whose
+/// contact history is neither committed nor reset yet. From there to the last touching element, the contact history of
+/// the elements that do not touch is reset.
 #[inline(always)]
 fn commit_pair<S: Space>(
     law: impl Fn() -> FrictionLaw<S::Real>,

@@ -237,7 +237,7 @@ struct Press<'a, S: Space, L> {
 const RESTING_SHARE: f64 = 0.01;
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// Adds all contacts of a pair.
+    /// Adds the contacts of a node set with a surface.
     #[inline(always)]
     fn nodes(&mut self, nodes: &Nodes<S>, group: &Group, surface: &S::Surface, basis: Basis) {
         let one = S::Real::splat(1.0);
@@ -328,7 +328,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     }
 
     /// Requests substeps in lanes where the penetration of a node at `node` (m) is predicted to exceed the penetration
-    /// that whole time steps resolve.
+    /// above which a time step is divided.
     #[inline(always)]
     fn look_ahead(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(whole_step_depth) = self.whole_step_depth else { return };
@@ -453,8 +453,9 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     }
 }
 
-/// Returns the position (m) of the node of a round piece about `center`, chosen so that the force acts midway between
-/// the two boundaries. So the result does not change if the bodies are exchanged.
+/// Returns a node position (m) for a round piece about `center`, such that the companion point of the node lies midway
+/// between the two boundaries. The force acts at the companion point, so it does not change if the bodies are
+/// exchanged.
 #[inline(always)]
 fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vector {
     center - gap.normal * (radius - gap.distance * S::Real::splat(0.5))

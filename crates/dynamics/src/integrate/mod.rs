@@ -54,7 +54,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// Returns the name of the method in files and reports.
+    /// Returns the name that files and reports use for the method.
     pub fn name(self) -> &'static str {
         match self {
             Self::SemiImplicitEuler => "semi-implicit-euler",

@@ -295,7 +295,7 @@ fn momentum<S: Space>(
     Twist { linear: twist.linear, angular: S::momentum(inertia, rotation, twist.angular) }
 }
 
-/// Converts back from [`momentum`] to a twist, for a body with this orientation.
+/// Converts the result of [`momentum`] back to a twist, for a body with the given orientation.
 #[inline(always)]
 fn of_momentum<S: Space>(
     model: &Model<S>,

@@ -12,7 +12,7 @@ use crate::state::State;
 ///
 /// The new slip rates are known only after the evaluation, so the displacements of the tangential springs are predicted
 /// with the old rates and then corrected. If they were advanced by the old rates alone, the energy of these springs
-/// would grow in every step, by a fraction of ω² dt² for a tangential angular frequency ω.
+/// would grow by a factor of about 1 + ω² dt² in every step, for a tangential angular frequency ω.
 pub(super) fn semi_implicit_euler<S: Space>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -103,8 +103,8 @@ fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S
     }
 }
 
-/// Ends a step: accepts the state that `scratch` was evaluated at, after correcting the displacement of every
-/// tangential spring by the change of its slip rate, multiplied by `share` (s).
+/// Ends a step: corrects the displacement of every tangential spring, and accepts the state that `scratch` was
+/// evaluated at. The correction is the change of the slip rate in the step, multiplied by the time `share` (s).
 fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
     let (new, old) = (&scratch.slip_rates, &scratch.old_slip_rates);
     commit_corrected(

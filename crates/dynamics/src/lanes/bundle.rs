@@ -20,7 +20,7 @@ pub(super) trait Unit: Simd + fmt::Debug + Send + Sync + 'static {
 #[derive(Clone, Copy)]
 pub(super) struct Bundle<U: Unit>(f64x8<U>);
 
-/// Eight truth values, one for each lane.
+/// Eight Booleans, one for each lane.
 #[derive(Clone, Copy)]
 pub(super) struct BundleMask<U: Unit>(mask64x8<U>);
 

@@ -17,7 +17,7 @@ use crate::space::{Pose, Quaternion, Rotation2, Rotation3, Space, Twist, Vec2, V
 pub trait Lanewise {
     /// The corresponding type made of scalars: the value in one lane.
     type Single;
-    /// Returns the same value in every lane.
+    /// Returns a value that equals `single` in every lane.
     fn in_all(single: &Self::Single) -> Self;
     /// Sets the value of one lane.
     fn put(&mut self, lane: usize, single: &Self::Single);
@@ -143,7 +143,7 @@ impl<T: Clone> Lanewise for PerLane<T> {
 /// Implements [`Lanewise`] from the names of the fields of a type:
 ///
 /// - `struct Name<R> { a, b }` for structs that are generic over a scalar, and `struct Name<S> { a, b }` for structs
-///   that are generic over a space; all fields are lanewise, except those after `masks`, which are truth values;
+///   that are generic over a space; all fields are lanewise, except those after `masks`, which are masks;
 /// - `enum Name<R> { One { a, b }, Two(a), Three }` for enums; the variant is part of the topology;
 /// - `same Name, Other;` for types whose values are equal in all lanes.
 #[macro_export]
@@ -242,7 +242,7 @@ macro_rules! lanewise {
     };
 }
 
-/// Sets the truth value of one lane.
+/// Sets one lane of a mask.
 pub fn put_truth<M: Mask>(mask: &mut M, lane: usize, single: bool) {
     let others = *mask;
     *mask = M::from_lanes(|l| if l == lane { single } else { others.lane(l) });
@@ -330,7 +330,7 @@ lanewise!(struct Substepping<R> { substeps, whole_step_depth, resting_allowance,
 lanewise!(struct Fast<R> { whole_step_way, hard });
 
 impl<S: Space> Model<S> {
-    /// Returns the model of one case in every lane.
+    /// Returns a model that equals `single` in every lane.
     pub(crate) fn in_all(single: &Model<S::Single>) -> Self {
         Self {
             bodies: Lanewise::in_all(&single.bodies),

@@ -43,11 +43,11 @@ pub enum Width {
     Avx512,
 }
 
-/// Work that is generic over the scalar, so that it can run with bundles of any width.
+/// A task that is generic over the scalar, so that it can run with bundles of any width.
 pub trait Task {
-    /// Result of the work.
+    /// Result of the task.
     type Output;
-    /// Runs the work.
+    /// Runs the task with `R` as the scalar.
     fn run<R: Real>(self) -> Self::Output;
 }
 
@@ -69,7 +69,7 @@ impl Width {
         }
     }
 
-    /// Returns the name of the width in files and reports.
+    /// Returns the name that files and reports use for the width.
     pub fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
@@ -134,9 +134,9 @@ pub(crate) mod units {
         Level::new().as_avx512().is_some()
     }
 
-    /// Runs scalar work with the instructions of a vector unit, if the machine has one. The vector instructions do not
-    /// overwrite their operands, which saves a tenth of all instructions. None of these instructions fuses a product
-    /// and a sum, so the results are bit-identical.
+    /// Runs scalar work with the AVX2 instruction set, if the machine supports it. Its instructions have a separate
+    /// operand for the result, which saves a tenth of all instructions. No multiplication is fused with an addition, so
+    /// the results are bit-identical.
     #[inline(always)]
     pub(crate) fn single<T>(work: impl FnOnce() -> T) -> T {
         static AVX2: LazyLock<Option<Avx2>> = LazyLock::new(|| Level::new().as_avx2());
@@ -146,8 +146,8 @@ pub(crate) mod units {
         }
     }
 
-    /// Runs scalar work with the basic instructions of the architecture, compiled once per kind of work: inlined, it
-    /// would be compiled again at every call.
+    /// Runs scalar work with the baseline instruction set of the architecture. This function is not inlined, so that
+    /// the work is compiled only once and not again at every call.
     #[inline(never)]
     fn unaided<T>(work: impl FnOnce() -> T) -> T {
         work()

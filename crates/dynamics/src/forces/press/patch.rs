@@ -155,9 +155,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Adds the forces of points that act like parallel springs. The elements with their tangential springs start at
     /// the index `first` of the list.
     ///
-    /// Friction acts at places around the center of pressure: in the directions of [`Points::axes`], at the
-    /// root-mean-square distance of the bearing points from the center. So it transfers the same moment as friction at
-    /// the points would, and the tangential springs persist when different points come into contact.
+    /// Friction acts at two points on each of the [`Points::axes`], one on either side of the center of pressure. Their
+    /// distance from the center is the root-mean-square distance of the bearing points from it. So friction transfers
+    /// the same moment as it would at the bearing points, and the tangential springs persist when other points come
+    /// into contact.
     #[inline(always)]
     pub(super) fn points(&mut self, first: usize, points: &Points<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -296,7 +297,7 @@ impl<S: Space> Spread<S> {
     }
 }
 
-/// Resultant pressure of a patch.
+/// Resultant of the pressure in a patch.
 struct Pressure<S: Space> {
     touching: <S::Real as Real>::Mask,
     /// The center of pressure (m).

@@ -11,17 +11,17 @@ use crate::space::{Linear, Space, Wrench};
 /// corners coincide.
 const SLACK: f64 = 1e-9;
 
-/// A corner that bears on a side of the other body always counts in full if it is farther than this distance (m) from
-/// the end of the side. A corner nearer to the end may share its contact with the other body's corner at that end.
+/// Distance (m) from the end of a side within which a corner that bears on the side may share its contact with the
+/// other body's corner at that end. A corner that is farther from the end always counts in full.
 const COMPANION: f64 = 0.01;
 
-/// A round piece faces a side if the direction toward the side is within the limits of the piece, or outside of them by
-/// at most about 45°. This constant is the sine of that angle.
+/// Sine of the largest angle, about 45°, by which the direction toward a side may lie outside the limits of a round
+/// piece that faces the side.
 const FACES: f64 = 0.7;
 
-/// A round piece whose center lies inside the core of the other body can bear on any side that it faces, and not only
-/// on the nearest side. The same applies up to this distance (m) outside of the core: where two bodies are flush, one
-/// of two nearly coincident corners lies there.
+/// Distance (m) outside the core of the other body up to which the center of a round piece is treated as inside the
+/// core. A round piece whose center is inside can bear on any side that it faces, and not only on the nearest side.
+/// Where two bodies are flush, one of two nearly coincident corners may lie just outside the core.
 const NEARLY_INSIDE: f64 = 1e-5;
 
 /// Tolerance, as the sine of an angle, for contacts between two round pieces: the direction toward the other piece may
@@ -154,7 +154,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     }
 }
 
-/// Share of a contact, and its derivative.
+/// Share, from 0 to 1, with which a corner bears on a side, and its derivative.
 struct Share<R> {
     value: R,
     /// Derivative of the share (1/m) with respect to the distance to the end of the side. Since the energy changes with
