@@ -27,8 +27,8 @@ pub(crate) struct PairFrame<S: Space> {
 pub(crate) struct AtFace<S: Space> {
     /// Lanes in which the other body's center of mass lies in front of the face.
     before: <S::Real as Real>::Mask,
-    /// Outward normal of the face, in the frame of the target's surface, with the same sign convention as contact
-    /// normals.
+    /// Unit normal of the face, in the frame of the target's surface. Like a contact normal, it points out of the
+    /// target: it is the outward normal of a face of the target, or the inward normal of a face of the contactor.
     out: S::Vector,
     /// Copy of [`Face::widest`](crate::body::Face::widest).
     widest: S::Real,

@@ -23,15 +23,15 @@ pub(crate) enum Pairs {
         /// The kind of every body.
         kinds: Vec<usize>,
         /// The pairs of two bodies, indexed by the kind of the body with the lower ID and then by the kind of the other
-        /// body. In these pairs, the body with the lower ID is number 0 and the other body is number 1.
+        /// body. In these pairs, the body with the lower ID is given as body 0 and the other body as body 1.
         meetings: Vec<Vec<Vec<ContactPair>>>,
         /// Number of pair indices that are reserved for each combination of two bodies.
         most: usize,
     },
     /// The pairs within each party are stored. The pairs between parties are derived from the contact kinds of the
-    /// bodies, since their number is quadratic in the number of bodies.
+    /// bodies, since the number of such pairs is quadratic in the number of bodies.
     Joined {
-        /// The pairs within parties; those between parties have higher numbers.
+        /// The pairs within parties. The pairs between parties have higher indices.
         pairs: Vec<ContactPair>,
         /// Ranges of the pairs within parties.
         couples: Vec<Couple>,
@@ -55,9 +55,11 @@ pub(crate) struct Foreign {
 }
 
 impl Foreign {
-    /// Returns the data from which the pairs of two bodies follow: contactor, target, interface, and the numbers of
-    /// node sets and surfaces that may touch. The body with the lower ID is given first. Returns `None` if the bodies
-    /// belong to one party or never touch.
+    /// Returns the contactor, the target and the interface of the pairs of two bodies, and how many node sets of the
+    /// contactor and how many surfaces of the target may touch. Returns `None` if the bodies belong to one party or
+    /// never touch.
+    ///
+    /// In the argument, the body with the lower ID comes first.
     #[inline(always)]
     fn of(&self, [a, b]: [BodyId; 2]) -> Option<(BodyId, BodyId, InterfaceId, [usize; 2])> {
         let ((first, one), (second, other)) = (self.bodies[a], self.bodies[b]);
@@ -142,7 +144,7 @@ impl Pairs {
         Self::OfKinds { kinds, meetings, most }
     }
 
-    /// Returns the pair with the given number.
+    /// Returns the pair with the given index.
     #[inline(always)]
     pub(crate) fn get(&self, index: usize) -> ContactPair {
         match self {
@@ -162,7 +164,7 @@ impl Pairs {
                 let (couple, at) = (beyond / foreign.most, beyond % foreign.most);
                 let count = foreign.bodies.len();
                 let found = foreign.of([couple / count, couple % count]);
-                // Only numbers of `of_couple` are passed.
+                // Only indices from `of_couple` are passed.
                 let (contactor, target, interface, [_, surfaces]) = found.unwrap_or_default();
                 let (nodes, surface) = (at / surfaces.max(1), at % surfaces.max(1));
                 let counts = Counts::Everywhere;
@@ -171,7 +173,7 @@ impl Pairs {
         }
     }
 
-    /// Returns the number of a pair, given by its bodies, node set and surface; the interface is ignored.
+    /// Returns the index of a pair, given by its bodies, node set and surface; the interface is ignored.
     pub(crate) fn number_of(&self, pair: &ContactPair) -> Option<usize> {
         let found = |number: &usize| {
             let at = self.get(*number);
@@ -181,7 +183,7 @@ impl Pairs {
         self.of_couple(between(pair)).find(found)
     }
 
-    /// Returns the number of the first pair between bodies of two parties.
+    /// Returns the index of the first pair between bodies of different parties.
     pub(crate) fn first_foreign(&self) -> usize {
         match self {
             Self::Listed { pairs, .. } | Self::Joined { pairs, .. } => pairs.len(),
@@ -189,7 +191,7 @@ impl Pairs {
         }
     }
 
-    /// Returns the numbers of the pairs of two bodies; the lower ID is given first.
+    /// Returns the indices of the pairs of two bodies. In `bodies`, the lower ID comes first.
     pub(crate) fn of_couple(&self, bodies: [BodyId; 2]) -> Range<usize> {
         let listed = |couples: &[Couple]| {
             couples
@@ -215,7 +217,7 @@ impl Pairs {
         }
     }
 
-    /// Returns the numbers of all pairs in order.
+    /// Returns the indices of all pairs in ascending order.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
         let (listed, bodies) = match self {
             Self::Listed { pairs, .. } => (pairs.len(), 0),

@@ -1,4 +1,4 @@
-//! The run loop: time steps, energy balance, forces from outside, observers, and the end of a run.
+//! The run loop: time steps, energy balance, external forces, observers, and the end of a run.
 
 use std::ops::ControlFlow;
 
@@ -65,10 +65,10 @@ where
 /// Integration settings of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simulation {
-    /// The method.
+    /// Integration method.
     pub method: Method,
-    /// Time step (s). It is divided during impacts if the model has [`Substepping`]. For an adaptive method, it is the
-    /// first step and the maximum step.
+    /// Time step (s). During impacts, the step is divided into substeps if the model has [`Substepping`]. For an
+    /// adaptive method, this is both the first step and the maximum step.
     pub time_step: f64,
     /// End time (s).
     pub end_time: f64,
@@ -324,8 +324,8 @@ impl<S: Space<Real = f64>> Stepper<S> {
         Ok(())
     }
 
-    /// Sets the force from outside the model on a body; it replaces an earlier force on this body. The force stays
-    /// constant during the next steps; setting force and moment to zero removes it.
+    /// Sets the external force on a body, and replaces an earlier external force on this body. The force stays constant
+    /// during the next steps; setting force and moment to zero removes it.
     ///
     /// Only the difference from the earlier force is added to the forces of the current state. So if the same force is
     /// set again, the results are bit-identical.
@@ -367,12 +367,12 @@ impl<S: Space<Real = f64>> Stepper<S> {
 /// Times of the steps of a run, in integer multiples of the shortest substep.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepTimes<R: Real> {
-    /// Number of shortest steps since the start.
+    /// Time since the start, as a multiple of the shortest substep.
     count: R,
-    /// Numbers of shortest steps in a whole step (`whole`) and in an ordinary substep (`short`).
+    /// Lengths of a whole step (`whole`) and of an ordinary substep (`short`), as multiples of the shortest substep.
     whole: R,
     short: R,
-    /// The shortest step (s).
+    /// Length (s) of the shortest substep.
     shortest: R,
     time_step: R,
     /// Lanes in which the current impact is hard. The step length changes only before and after an impact, since a

@@ -148,7 +148,8 @@ impl<R: Real> Lanes<R> {
         }
     }
 
-    /// Evaluates the forces; returns the lanes whose stacks rest or must be settled alone.
+    /// Evaluates the forces, and ends the attempts whose stack is at rest or must be settled alone. Returns the lanes
+    /// of these attempts.
     fn step(
         &mut self,
         tolerance: f64,

@@ -17,7 +17,8 @@ const GOING: f64 = 0.1;
 /// Displacement of a body, as a fraction of its reach, beyond which it counts as out of place.
 const LEFT: f64 = 0.5;
 
-/// A body is classed as moving, too, if its displacement exceeds this fraction of the largest displacement of any body.
+/// Displacement of a body, as a fraction of the largest displacement of any body, from which it is also classed as
+/// moving.
 const WITH_IT: f64 = 0.25;
 
 /// Ratio of penetration to displacement above which a body is classed as sinking.
@@ -42,7 +43,7 @@ pub struct SettleError {
 /// Cause of the failure to come to rest.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Lack {
-    /// The body has no contact with any other.
+    /// The body has touched no other body, and none of its force elements has been loaded.
     #[error("nothing lies under it, and nothing holds it")]
     Support,
     /// The support of the body is too soft.

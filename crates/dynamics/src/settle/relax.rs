@@ -38,7 +38,7 @@ struct Touch<S: Space> {
     normal: S::Vector,
 }
 
-/// Stiffness of all supports of a body, against displacement (N/m) and against rotation (N·m).
+/// Total stiffness of all supports of a body, against displacement (N/m) and against rotation (N·m/rad).
 #[derive(Clone, Copy)]
 struct Held<R> {
     translation: R,
@@ -76,7 +76,7 @@ pub(super) struct Relaxation<S: Space> {
     /// loses its contacts must not become light while other bodies lie on it.
     held: Vec<Held<S::Real>>,
     touches: Vec<Touch<S>>,
-    /// The lanes in which each element of the list touched.
+    /// For each contact element, the lanes in which it touched when the list of contacts was last updated.
     pub(super) touched: Vec<<S::Real as Real>::Mask>,
     /// Number of remaining steps without momentum.
     calm: u64,
@@ -152,7 +152,8 @@ impl<S: Space> Relaxation<S> {
         )
     }
 
-    /// Updates the list of contacts from the last evaluation, and the stiffness of the supports of each body.
+    /// Replaces the list of contacts by those of the last force evaluation, and updates the stiffness of the supports
+    /// of each body.
     pub(super) fn weigh(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]
@@ -208,8 +209,8 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Takes one step, driven by the forces at a state, to a state nearer to rest, and computes the forces of the new
-    /// state.
+    /// Takes one relaxation step: moves the bodies under the forces of the current state, and computes the forces of
+    /// the new state.
     pub(super) fn advance(
         &mut self,
         model: &Model<S>,
@@ -266,7 +267,8 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Renumbers the elements for a new list.
+    /// Moves the data of the contact elements to the indices of a new list. `origins` contains, for every element of
+    /// the new list, its index in the old list; `None` for an element that is new.
     pub(super) fn renumber(&mut self, origins: &[Option<usize>], scratch: &mut Scratch<S>) {
         scratch.renumber(origins);
         let touched =
@@ -330,7 +332,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Adds the tangential displacement of every contact to the displacement of its tangential spring.
+    /// Adds the tangential displacement of every contact in this step to the displacement of its tangential spring.
     #[inline(always)]
     fn slide(&self, sticks: &mut [Stick<S>]) {
         for touch in &self.touches {

@@ -60,22 +60,23 @@ impl<S: Space> Nearest<S> {
     }
 }
 
-/// Range of the directions that the boundary of a body faces at a point, such as a corner.
+/// Range of the outward normals of a body's boundary at a point, such as a corner. The range decides on which pieces of
+/// another body's surface the point can bear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facing<S: Space> {
     /// Unit vectors with the meaning of [`Round::limits`], in the frame of the other body's surface.
     pub limits: [S::Vector; 2],
-    /// The point can bear on a piece of the other surface only if the direction toward the piece has a component of at
-    /// most this value along each limit.
+    /// Tolerance of the range: the point can bear on a piece of the other surface with outward normal `n` only if
+    /// `−n · limit` is at most this value for both limits.
     pub most: f64,
-    /// The point can bear on a piece only if it lies less than this distance (m) outside of every side that it does not
-    /// face.
+    /// Tolerance (m) at the sides of the other surface that the range excludes. If the point lies this distance or more
+    /// outside of such a side, it cannot bear on any piece.
     pub slack: f64,
 }
 
 impl<S: Space> Facing<S> {
-    /// Creates the range for a point with an outward unit normal; at a corner, this is the mean of the normals of both
-    /// sides. The range extends to 70° from the normal, so it includes the normals of both sides of a right-angled
+    /// Creates the range for a point from an outward unit normal. At a corner, `normal` is the mean of the normals of
+    /// both sides. The range extends to 70° from `normal`, so it includes the normals of both sides of a right-angled
     /// corner.
     #[inline(always)]
     pub(crate) fn outward(normal: S::Vector) -> Self {
@@ -124,16 +125,18 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
 
     /// Returns the gap and the nearest piece of the boundary.
     ///
-    /// A straight side is extended at both ends by `slack` (m). Where the corners of two bodies coincide, the sign of
-    /// `slack` decides, independently of rounding errors, which of the corners lies in front of a side.
+    /// A straight side is extended at both ends by `slack` (m), or shortened if `slack` is negative. So where a corner
+    /// of another body coincides with an end of a side, the sign of `slack` and not a rounding error decides whether
+    /// the corner lies in front of the side.
     fn nearest(&self, point: S::Vector, slack: S::Real) -> Nearest<S>;
 
-    /// Returns, for a point inside the core, the nearest piece on which the point can bear as part of another body's
-    /// boundary; elsewhere returns `nearest`.
+    /// Returns the piece on which a boundary point of another body bears. For a point inside the core, this is the
+    /// nearest piece that the [`Facing`] range permits. For all other points, and where the range permits no piece, it
+    /// is `nearest`.
     ///
     /// A point inside does not always press into the nearest piece: a corner of a box that stands flush on an equal box
-    /// lies on a side of the lower box, but presses on its top. So the result depends on the directions in which the
-    /// boundary of the other body faces at this point.
+    /// lies on a side of the lower box, but presses on its top. So the result depends on the outward normals of the
+    /// other body's boundary at this point.
     #[inline(always)]
     fn bearing(&self, _point: S::Vector, _facing: &Facing<S>, nearest: Nearest<S>) -> Nearest<S> {
         nearest
@@ -146,9 +149,11 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
         self.gap(point).distance.lt(S::Real::zero())
     }
 
-    /// Visits, in order, those of `count` points (m) that penetrate in at least one lane; passes the index, the
-    /// position and the gap of each. `facing` returns the directions that the boundary faces at one of the points, if
-    /// known.
+    /// Calls `visit` with the index, the position (m) and the gap of every point that penetrates the surface in at
+    /// least one lane, in ascending order of the index.
+    ///
+    /// The indices are `0..count`. For an index, `point` returns the position of the point, and `facing` returns the
+    /// range of the outward normals of the boundary there, if known.
     #[inline(always)]
     fn penetrated_by(
         &self,
@@ -331,8 +336,8 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
 }
 
 impl<R: Real> Shape<R> {
-    /// Returns the gap of a point of another body, given the directions in which the boundary of that body faces at the
-    /// point.
+    /// Returns the gap at a boundary point of another body, measured from the piece on which the point bears; see
+    /// [`Surface::bearing`]. Without `facing`, returns the same as [`Surface::gap`].
     #[inline(always)]
     fn gap_facing(&self, point: Vec2<R>, facing: Option<Facing<Planar<R>>>) -> Gap<Planar<R>> {
         let gap = self.gap(point);
@@ -347,7 +352,10 @@ impl<R: Real> Shape<R> {
 
 impl Shape {
     /// Returns the unit outward normal at a point (m) of the boundary; at a corner, the mean of the normals of both
-    /// sides; `None` for a point off the boundary, and for a cradle, which touches only the body that it carries.
+    /// sides.
+    ///
+    /// Returns `None` for a point off the boundary, and for every point of a cradle, since a cradle touches only the
+    /// body that it carries.
     pub fn outward(&self, point: Vec2) -> Option<Vec2> {
         let near = 1e-9 * self.reach();
         let on_it = self.gap(point).distance.abs() < near;

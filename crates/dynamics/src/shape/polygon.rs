@@ -14,7 +14,7 @@ use crate::space::{Linear, Planar, Vec2};
 /// rounding errors would decide whether they touch.
 pub(super) const FLUSH: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// A rounded corner is divided into parts that turn by at most this angle (rad).
+/// Maximum angle (rad) of one part of a rounded corner that is divided into parts.
 const CORNER_STEP: f64 = TAU / 24.0;
 
 /// A convex polygon whose corners may be rounded.
@@ -141,8 +141,8 @@ impl<R: Real> Polygon<R> {
         Nearest { gap, round, to_end, toward_end, core }
     }
 
-    /// Returns, for a point inside the core, the nearest side on which the point can bear as part of another body's
-    /// boundary; elsewhere returns `nearest`. See [`Surface::bearing`](super::Surface::bearing).
+    /// Returns the side on which a boundary point of another body bears, if the point lies inside the core; otherwise
+    /// returns `nearest`. See [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(
         &self,
@@ -327,7 +327,8 @@ impl Polygon {
         (math::atan2(-a.x, a.z), math::atan2(a.x * b.z - a.z * b.x, a.dot(b)))
     }
 
-    /// Returns, alternating, the arcs of the corners and the sides; only the sides if the corners are sharp.
+    /// Returns the pieces of the boundary in order: the corner arcs and the sides in alternation, or only the sides if
+    /// the corners are sharp.
     fn pieces(&self) -> Vec<Piece> {
         let mut pieces = Vec::new();
         for (i, side) in self.sides.iter().enumerate() {

@@ -90,9 +90,8 @@ impl<R: Real> BarrelProfile<R> {
         }
     }
 
-    /// Returns, for a point inside the core, the nearest part of the boundary, stave or head, on which the point can
-    /// bear as part of another body's boundary; elsewhere returns `nearest`. See
-    /// [`Surface::bearing`](super::Surface::bearing).
+    /// Returns the stave or head on which a boundary point of another body bears, if the point lies inside the core;
+    /// otherwise returns `nearest`. See [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(
         &self,

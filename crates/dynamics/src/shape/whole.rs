@@ -10,7 +10,8 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
     /// surface. Patches without contact may be included; their distance is positive.
     ///
     /// `position` is the center of mass (m) of the solid's body, and `rotation` the rotation from the body frame to the
-    /// frame of the surface. In lanes outside of `near`, any patch may be returned as a patch without contact.
+    /// frame of the surface. In lanes outside of `near`, patches need not be computed and may be passed to `visit` as
+    /// patches without contact.
     fn meet(
         &self,
         surface: &S::Surface,
@@ -33,7 +34,7 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
         None
     }
 
-    /// Returns a number that is equal for solids of one kind.
+    /// Returns a number that identifies the kind of the solid, such as capsule or block.
     fn kind(&self) -> u64;
 
     /// Returns the maximum number of tangential springs that the solid needs for one surface.
@@ -64,7 +65,7 @@ impl<S: Space> Touch<S> {
     }
 }
 
-/// Contact of two bodies: at a point, along a line that they share, or over a face that they share.
+/// Contact of two bodies: a point contact, or a contact along a line or over a face that they share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch<S: Space> {
     /// Index of the first tangential spring of the patch; less than [`Whole::most_sticks`].
@@ -80,7 +81,8 @@ pub struct Patch<S: Space> {
 pub struct Points<S: Space> {
     /// The points.
     pub points: [Bearing<S>; MOST_POINTS],
-    /// Unit vectors along the touching faces of both bodies, along which the tangential springs are placed.
+    /// Unit vectors in the planes of the touching faces, two for each body. The tangential springs are placed on the
+    /// lines through the center of pressure in these directions.
     pub axes: [S::Vector; 4],
 }
 
@@ -93,7 +95,7 @@ pub const MOST_POINTS: usize = 17;
 pub struct Bearing<S: Space> {
     /// Point of contact.
     pub touch: Touch<S>,
-    /// Number of springs that the point represents.
+    /// Weight of the point: the number of springs that it represents, which need not be an integer.
     pub share: S::Real,
     /// Derivative of `share` with respect to the rotation of the contactor (1/rad).
     pub turning: S::Spin,
@@ -109,11 +111,11 @@ pub struct Bearing<S: Space> {
 /// E = a U(δ) + b (U(2 δ₀ − δ) + n U(δ₀))      n = 0 for a line, 2 for a face
 /// ```
 ///
-/// with `a = b = 1` equals, at any rotation, the energy of a capsule supported at its two ends, or of a disc supported
-/// at four points of its rim. When two bodies that lie flat on each other start to rock, the deepest point moves from
-/// one end to the other. At that moment the part of the force at the deepest point, `a U′(δ) − b U′(2 δ₀ − δ)`,
-/// vanishes if `a = b`, so neither force nor moment jumps. A patch that shrinks to a point has the stiffness of one
-/// spring, so there `a = b = 1/(2 + n)`.
+/// contains the energy `U` of one spring as a function of its depth. With `a = b = 1`, `E` equals, at any rotation, the
+/// energy of a capsule supported at its two ends, or of a disc supported at four points of its rim. When two bodies
+/// that lie flat on each other start to rock, the deepest point moves from one end to the other. At that moment the
+/// part of the force at the deepest point, `a U′(δ) − b U′(2 δ₀ − δ)`, vanishes if `a = b`, so neither force nor moment
+/// jumps. A patch that shrinks to a point has the stiffness of one spring, so there `a = b = 1/(2 + n)`.
 ///
 /// As bodies slide and turn, `a`, `b` and the position of the middle change as well, and so does the energy. The
 /// corresponding forces close the energy balance, for example for a capsule that slides off the head of a barrel.
@@ -123,10 +125,10 @@ pub struct Spread<S: Space> {
     pub middle: Touch<S>,
     /// Weights of the parts of the patch.
     pub shares: Shares<S::Real>,
-    /// Extent (m) of the patch from its middle.
+    /// Half the length (m) of a line; for a face, the distance (m) from its middle to the nearest point of its edge.
     pub radius: S::Real,
-    /// Unit vectors along the patch, which turn with one of the bodies and along which the tangential springs are
-    /// placed.
+    /// Unit vectors along the patch, which turn with one of the bodies. The tangential springs are placed at the center
+    /// of pressure and on the lines through it in these directions.
     pub axes: Axes<S>,
     /// Derivatives with respect to the motion of the bodies.
     pub slopes: Slopes<S>,
@@ -137,8 +139,9 @@ pub struct Spread<S: Space> {
 /// mass (1/rad), stored in [`Wrench::moment`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes<S: Space> {
-    /// Derivative of the depth δ₀ (m) at the middle of the patch, as far as it is due to the shift of the middle along
-    /// the bodies. The part that is due to the motion of the bodies themselves is excluded.
+    /// Derivative of the depth δ₀ (m) at the middle of the patch. It contains only the change of depth that arises
+    /// because the middle shifts to other points of the bodies. The change due to the motion of the bodies at the
+    /// middle is excluded.
     pub middle: Wrench<S>,
     /// Derivative of `a`, the weight of the deepest point.
     pub deepest: Wrench<S>,
@@ -162,7 +165,7 @@ pub struct Shares<R> {
     /// Weight of the other parts, `b` in [`Spread`]; less than `a` only if the bodies are rotated out of the plane of
     /// the patch.
     pub others: R,
-    /// Share of the friction that may act at a distance from the center of pressure; zero for a contact at a point.
+    /// Maximum share of the friction that acts at a distance from the center of pressure; zero for a point contact.
     pub aside: R,
 }
 
@@ -195,8 +198,8 @@ impl<S: Space> Axes<S> {
     }
 }
 
-/// Empty type: in the plane, no solid touches as a whole. Convex boundaries touch with their round pieces
-/// ([`Round`](crate::body::Round)) instead.
+/// Uninhabited type, because there are no [`Whole`] solids in the plane. Planar convex boundaries touch with their
+/// round pieces ([`Round`](crate::body::Round)) instead.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoWhole {}
 

@@ -43,7 +43,7 @@ impl Barrel {
     /// the chime, which is the edge between head and stave.
     ///
     /// # Errors
-    /// If these are not the dimensions of a barrel.
+    /// If the dimensions are invalid; the message of [`BarrelError`] lists the conditions.
     pub fn new(
         length: f64,
         head_radius: f64,

@@ -25,8 +25,8 @@ pub struct Closest {
 }
 
 /// Maximum number of evaluations of the search along an axis. Bisection alone needs 50. False position may converge
-/// more slowly than bisection, for example where the slope is constant to nine digits up to a kink; then every third
-/// evaluation is a bisection.
+/// more slowly than bisection, for example where the slope is constant to nine digits up to a kink. So every third
+/// evaluation bisects the interval unless the interval has halved.
 const MOST_ALONG: u32 = 180;
 
 /// Result of a search along a segment: the position, from −1 at `middle − half` to 1 at `middle + half`; the gap at
@@ -38,8 +38,8 @@ type Along = (f64, Gap<Spatial>, u32, bool);
 const FLAT: f64 = 1e-14;
 /// Maximum number of steps of Halley's method along a segment before the slower search takes over.
 const MOST_HALLEY: u32 = 6;
-/// Length of a step below which the error that remains after the step is smaller than the rounding error; the error is
-/// proportional to the third power of the length.
+/// Length of a step of Halley's method, as a fraction of half the segment, below which the search ends. The error that
+/// remains after a step is proportional to the third power of the step; here it is below the rounding error.
 const LAST_HALLEY: f64 = 1e-5;
 
 /// Returns the point of a segment that is closest to a hull. For a tube there is a closed form. For the stave of a
@@ -205,7 +205,7 @@ struct Support {
     across: f64,
     /// Unit vector in the circumferential direction.
     around: Vec3,
-    /// Component β, perpendicular to the axis of the barrel, of the direction in which the support point lies.
+    /// Component β, perpendicular to the axis of the barrel, of the direction whose support point this is.
     outward: f64,
 }
 
@@ -223,9 +223,10 @@ impl Set<'_> {
 
     /// Returns the support of a unit direction, with the curvature of the surface there.
     ///
-    /// The support function is `h = R |n| − a β` on the stave and `h = l |α| + r β` on the chime, where α and β are the
-    /// components of the direction along and across the axis; the second derivatives of `|n|` and `β` are `1`
-    /// tangentially and `1/β` around the axis.
+    /// The support function is `h = R |n| − a β` on the stave and `h = l |α| + r β` on the chime. Here α and β are the
+    /// components of the direction `n` along and across the axis, `l` is half the length of the core, `r` the radius of
+    /// its heads, and `R` and `a` are as in [`Barrel`]. The curvature follows from the second derivatives: that of
+    /// `|n|` is 1 in every tangential direction, and that of β is `1/β` around the axis.
     fn support(&self, direction: Vec3) -> Support {
         let local = self.rotation.unapply(direction);
         let barrel = self.barrel;
@@ -285,14 +286,16 @@ fn separation(target: &Set<'_>, contactor: &Set<'_>, normal: Vec3) -> Separation
     Separation { offset, distance: offset.dot(normal), supports }
 }
 
-/// Tangential part of `offset`, relative to the lengths involved, below which a normal is exact to rounding.
+/// Length of the tangential part of [`Separation::offset`] below which a normal is exact to rounding, as a fraction of
+/// the sum of the length of `offset` and the distance between the centers of the barrels.
 const TANGENTIAL: f64 = 4e-15;
 /// Newton step (rad) below which a normal is exact. Near the edge of a head the support point moves much faster than
 /// the direction turns, so rounding errors affect its position long before they affect the normal.
 const TURN: f64 = 1e-11;
 /// Maximum number of Newton steps before projections are used.
 const MOST_STEPS: u32 = 25;
-/// Maximum number of rounds of projections.
+/// Maximum number of attempts with Newton's method. After a failed attempt, projections determine the start of the next
+/// one.
 const MOST_HELP: u32 = 40;
 
 /// Returns the closest points of two barrels; the target is at the origin.
@@ -395,8 +398,8 @@ fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
 /// axis. The result is the normal out of the target, the point of the contactor's core and the distance (m).
 ///
 /// The projections of such heads overlap in a lens. The heads are closest at a corner of the lens, unless the rim of
-/// one lies inside the other. The solution uses Newton's method on the angles of both points; the normal must lie
-/// between the head and the stave of both barrels, otherwise another feature is closer.
+/// one lies inside the other. The solution uses Newton's method on the angles of both points. For both barrels, the
+/// normal must lie between the normals of the head and of the stave at the rim; otherwise another feature is closer.
 fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
     let side = contactor.center.x.signum();
     let facing = contactor.axis() * -(side * contactor.axis().x.signum());
