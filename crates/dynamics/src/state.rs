@@ -16,11 +16,11 @@ pub struct State<S: Space> {
     pub poses: Vec<Pose<S>>,
     /// Twist of every body.
     pub twists: Vec<Twist<S>>,
-    /// The contact elements within reach, with their contact history.
+    /// Contact elements that may touch before the list is rebuilt, with their contact history.
     pub contact_elements: ContactElements<S>,
     /// Plastic elongation and failure of every force element.
     pub memory: Vec<Memory<S>>,
-    /// Forces from outside the model, at most one for each body; changed by [`Stepper::apply`](crate::Stepper::apply).
+    /// External forces, at most one for each body; changed by [`Stepper::apply`](crate::Stepper::apply).
     pub applied: Vec<Applied<S>>,
 }
 

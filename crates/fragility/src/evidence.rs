@@ -34,7 +34,7 @@ pub struct Evidence {
     pub capacity: Capacity,
     /// Number of cases with this observation.
     pub weight: f64,
-    /// Group of dependent cases, for example the index of their record.
+    /// Number that identifies a group of dependent cases, for example the index of their record.
     /// [`leave_one_out`](crate::leave_one_out) omits one group at a time; other methods ignore the group.
     pub group: usize,
 }

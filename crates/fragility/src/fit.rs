@@ -28,9 +28,9 @@ pub enum FitError {
     Invalid {
         /// Index of the observation in the evidence, counted from 0.
         index: usize,
-        /// Expected value.
+        /// Description of a valid value.
         expected: &'static str,
-        /// Value that was found.
+        /// Invalid value.
         found: f64,
     },
     /// The given dispersion is not a positive number.

@@ -20,8 +20,8 @@ pub struct Goodness {
     pub groups: usize,
     /// Degrees of freedom: number of groups minus number of fitted parameters.
     pub freedom: usize,
-    /// p-value: the probability of a statistic `pearson` at least as large as this one if the curve is true. If there
-    /// are no degrees of freedom, `p` is 1 and the test is meaningless.
+    /// p-value: the probability of a statistic `pearson` at least as large as this one if the cases follow the curve.
+    /// If there are no degrees of freedom, `p` is 1 and the test is meaningless.
     pub p: f64,
 }
 
@@ -90,8 +90,8 @@ pub fn goodness_in_bins(bins: &[Vec<Stripe>], found: &Fit) -> Goodness {
     }
 }
 
-/// Estimates by simulation the probability of a deviance at least as large as the observed one if the fitted
-/// curve is true.
+/// Estimates by simulation the probability of a deviance at least as large as the observed one if the cases follow
+/// the fitted curve.
 ///
 /// Counts are sampled from the curve, and a curve is fitted to each sample. The result is valid even for
 /// small counts, for which the χ² approximation is not.

@@ -15,7 +15,7 @@ pub enum HazardError {
         row: usize,
         /// Name of the invalid quantity.
         what: &'static str,
-        /// Value that was found.
+        /// Invalid value.
         found: f64,
     },
     /// Intensities are not in ascending order.
@@ -28,7 +28,7 @@ pub enum HazardError {
         row: usize,
         /// Intensity of the previous row.
         before: f64,
-        /// Value that was found.
+        /// Intensity of this row.
         found: f64,
     },
     /// Rates increase with intensity.
@@ -42,7 +42,7 @@ pub enum HazardError {
         row: usize,
         /// Rate of the previous row.
         before: f64,
-        /// Value that was found.
+        /// Rate of this row.
         found: f64,
     },
 }
@@ -65,8 +65,8 @@ pub struct Rate {
     pub low: f64,
     /// Rate (1/year) if shaking stronger than the last row has the worst possible effect.
     pub high: f64,
-    /// Effect of shaking with the intensity of the first row. If this effect is not small, weaker and more frequent
-    /// shaking matters as well, and the table should begin at a lower intensity.
+    /// Probability of the event, or expected consequence, at the intensity of the first row. If this value is not
+    /// small, weaker and more frequent shaking matters as well, and the table should begin at a lower intensity.
     pub at_first: f64,
 }
 
@@ -91,7 +91,7 @@ const GAUSS: [(f64, f64); 5] = [
 ];
 
 /// Width of the integration intervals in `ln x`. With this width, the error is about 10⁻⁹ even for a
-/// fragility curve with the dispersion 0.05.
+/// fragility curve with a dispersion of 0.05.
 const PIECE: f64 = 0.01;
 
 impl Hazard {
@@ -203,8 +203,11 @@ impl Hazard {
         }
     }
 
-    /// Deaggregates the annual rate into the contributions of the ranges between the given intensities.
-    /// Ranges outside the table are omitted.
+    /// Returns the contributions to the annual rate of an event, or to the expected annual consequence, of the ranges
+    /// between consecutive intensities `edges` (deaggregation).
+    ///
+    /// `consequence` returns the probability of the event, or the expected consequence, at an intensity. Intensities
+    /// outside the table contribute nothing.
     pub fn contributions(
         &self,
         edges: &[f64],

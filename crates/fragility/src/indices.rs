@@ -33,11 +33,15 @@ pub struct Index {
 /// `V` is the variance of all `f(A)` and `f(B)`. All results are centered on the mean of all `f(A)` and `f(B)`.
 /// Intervals come from the delete-one jackknife over blocks and from Student's t distribution, with the number of
 /// blocks minus one as degrees of freedom. For the total index, an interval is computed on the linear and on the
-/// logarithmic scale, and the wider one is returned. If an input changes the result in at most half of the blocks, such
-/// changes are treated as rare events, a small proportion of which ([`unobserved`]) may be missing from the blocks. The
-/// interval is then extended to the index that would result if the missing changes were as large as the range of the
-/// results. Bounds are clamped to the range from 0 to 1. In simulations with 16 to 256 blocks, the coverage is at least
-/// 89 % for binary results, counts and continuous results (`tests/claims.rs`).
+/// logarithmic scale, and the wider one is returned.
+///
+/// If an input changes the result in at most half of the blocks, the largest changes may be too rare to occur in any
+/// block. The intervals therefore allow for a small proportion of such blocks, given by [`unobserved`]. They are
+/// extended to the indices that would result if the change in these blocks were as large as the range of the results.
+/// Finally, the bounds are clamped to the range from 0 to 1.
+///
+/// In simulations with 16 to 256 blocks, the coverage is at least 89 % for binary results, counts and continuous
+/// results (`tests/claims.rs`).
 ///
 /// Returns `None` for fewer than two blocks, for blocks of different lengths, and for constant results.
 pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {

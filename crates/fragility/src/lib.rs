@@ -88,7 +88,7 @@ pub use unknowns::{
     interval_of, shaken, share_less,
 };
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// Includes the example of the README in the doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -22,8 +22,8 @@ impl<const N: usize> Score<N> {
 /// An observation of a standard normal variable `Z`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Observation<const N: usize> {
-    /// `Z = z`. The second value is the contribution of `ln ∂z/∂x` to the log-density; it omits the slope if
-    /// the slope is a parameter.
+    /// `Z = z`. The second value is subtracted from the log-density: `−ln ∂z/∂x = ln x − ln b`, where `b` is the
+    /// slope of `z` as a function of `ln x`. If the slope is a parameter, the second value is `ln x`.
     At(Score<N>, f64),
     /// `Z` is at most `z`.
     Below(Score<N>),
@@ -225,7 +225,8 @@ pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Op
     Some(b)
 }
 
-/// Returns the covariance of the parameters: the inverse of the negative Hessian.
+/// Returns the covariance of the parameters, which is the inverse of the negative Hessian; `None` if the negative
+/// Hessian is not positive definite.
 pub(crate) fn covariance<const N: usize>(curvature: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     let information = negated(curvature);
     let mut inverse = [[0.0; N]; N];

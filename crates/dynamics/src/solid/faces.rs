@@ -14,13 +14,14 @@ use crate::space::{Linear, Rotation3, Spatial, Vec2, Vec3};
 /// Maximum number of corners of the polygon that two rectangles share.
 const MOST: usize = 8;
 
-/// Distance (m) outside of a face within which a corner counts as inside, since corners of flush blocks coincide.
+/// Tolerance (m) of clipping: a corner that is outside of a face by at most this distance counts as inside, since the
+/// corners of flush blocks coincide.
 const FLUSH: f64 = 1e-9;
 
 /// A corner of a shared polygon, in the frame of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Vertex {
-    /// The corner (m) as a point of the contactor's surface.
+    /// Point (m) of the contactor's surface at the corner.
     pub(super) point: Vec3,
     pub(super) gap: Gap<Spatial>,
     /// Number of springs that the corner represents.
@@ -32,10 +33,10 @@ pub(super) struct Vertex {
 /// The polygon that the faces of two blocks share.
 pub(super) struct Shared<const CORNERS: usize, const AXES: usize> {
     pub(super) vertices: [Option<Vertex>; CORNERS],
-    /// Share of the contact that the polygon carries: 1 where a face of either block meets the other block, 0 where an
-    /// edge of one block crosses an edge of the other.
+    /// Weight of the polygon in the contact, from 0 to 1: 1 if a face of either block meets the other block, and 0 if
+    /// an edge of one block crosses an edge of the other.
     pub(super) flat: f64,
-    /// Unit vectors along the face of the target, or along the faces of both blocks.
+    /// Two unit vectors along the face of the target; [`shared_by_both`] adds two along the face of the contactor.
     pub(super) axes: [Vec3; AXES],
 }
 
@@ -101,11 +102,11 @@ struct Face {
 }
 
 impl Face {
-    /// Returns the face of a block that faces a direction, which is given in the frame of the block.
+    /// Returns the face of a block whose outward normal is closest to a direction in the frame of the block.
     ///
     /// `frame` is the rotation from the frame of the block to that of the target, where the origin of the block lies at
-    /// `at` (m). The cross product of the two vectors along the face points to the same side as `up`, which is the
-    /// outward normal by default.
+    /// `at` (m). The second vector along the face is reversed if necessary, so that the cross product of the two
+    /// vectors points to the same side as `up`. If `up` is `None`, the outward normal is used instead.
     fn of(block: &Block, direction: Vec3, at: Vec3, frame: Rotation3, up: Option<Vec3>) -> Self {
         let steep = [direction.x.abs(), direction.y.abs(), direction.z.abs()];
         let halves = [block.half.x, block.half.y, block.half.z];
@@ -125,7 +126,7 @@ impl Face {
         Self { middle, along, outward, half: [halves[next], halves[last]] }
     }
 
-    /// Returns the corner (m) at which a side begins.
+    /// Returns the position (m) of the corner at which a side starts.
     fn corner(&self, side: usize) -> Vec3 {
         let ends = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let (u, v) = ends[side % 4];
@@ -176,9 +177,9 @@ pub(super) fn shared_by_both(
 /// The two faces that meet at the closest points overlap in a polygon, in projection on the face of the target. Each
 /// corner of the polygon acts like a number of springs: the angle by which the boundary turns at the corner, divided by
 /// 90°. So the whole polygon always acts like four springs. A corner of a block on the face of the other block acts
-/// like one spring. Where edges of twisted blocks cross, two corners of the polygon replace one corner of a block. The
-/// result is a continuous function of the pose, since the turn of a convex boundary is continuous, and exactly flush
-/// faces need no special case.
+/// like one spring. If the blocks are rotated relative to each other about the normal, their edges can cross, and two
+/// corners of the polygon then replace one corner of a block. The result is a continuous function of the pose, since
+/// the turn of a convex boundary is continuous, and exactly flush faces need no special case.
 fn shared(
     contactor: &Block,
     target: &Block,
@@ -252,7 +253,7 @@ fn shared(
 /// to 1.
 ///
 /// The weight vanishes where the common normal deviates strongly from the normal of the target's face. For example, it
-/// vanishes for two nearly parallel sides that pass each other beside the faces.
+/// vanishes for two nearly parallel sides whose common normal lies nearly in the plane of the target's face.
 fn crossing(
     resting: &Face,
     own: usize,

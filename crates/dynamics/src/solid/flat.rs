@@ -9,25 +9,25 @@ use super::{Capsule, Hull};
 use crate::shape::{Gap, Shares, Slopes};
 use crate::space::{Linear, Quaternion, Rotation3, Spatial, Vec3, Wrench};
 
-/// Middle of a patch that two bodies share, in the frame of the target.
+/// Line or face contact of two bodies, described at the middle of the contact patch, in the frame of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flat {
-    /// The middle of the patch (m) as a point of the contactor's surface.
+    /// Point (m) of the contactor's surface at the middle of the patch.
     pub(super) point: Vec3,
     pub(super) gap: Gap<Spatial>,
-    /// The weights, as in [`Spread`](crate::shape::Spread).
+    /// Weights of the deepest point and of the other parts of the patch, as in [`Spread`](crate::shape::Spread).
     pub(super) shares: Shares<f64>,
     pub(super) radius: f64,
     /// Unit vectors along the patch; a line has only the first.
     pub(super) axes: [Vec3; 2],
 }
 
-/// Sine of the largest angle between two solids that share a patch.
+/// Sine of the largest angle at which two solids touch along a line or a face.
 pub(super) const WIDEST: f64 = 0.1;
 /// Extent (m) of a line or face from its middle, above which the line or face has full weight.
 const LONG: f64 = 0.05;
 
-/// Returns `3 u² − 2 u³`, clamped to 0 and 1.
+/// Returns `3 u² − 2 u³` (smoothstep), where `u` is first clamped to the range from 0 to 1.
 pub(super) fn smooth(u: f64) -> f64 {
     let u = u.clamp(0.0, 1.0);
     u * u * (3.0 - u - u)
@@ -46,8 +46,8 @@ fn shares(springs: f64, sine_squared: f64, length: f64) -> Shares<f64> {
     Shares { deepest: 1.0 - flat * (1.0 - each), others: flat * each, aside: long }
 }
 
-/// Returns the patch that a contactor shares with a target, in the frame of the target; `None` if they touch at a
-/// point.
+/// Returns the contact patch of a contactor and a target, in the frame of the target; `None` if they touch at a point,
+/// and for two blocks.
 ///
 /// `at` is the origin (m) of the contactor, `frame` the rotation from the frame of the contactor to that of the target,
 /// and `normal` the contact normal out of the target.
@@ -162,7 +162,8 @@ pub(super) fn slopes(
     Slopes { middle, deepest, others }
 }
 
-/// Returns the patch of two tubes; the axis of the target is along `x`.
+/// Returns the contact line of two tubes; the axis of the target is along `x`. Returns `None` if the tubes are not
+/// nearly parallel, or do not overlap along the axis.
 fn side_by_side(target: &Capsule, tube: &Capsule, at: Vec3, direction: Vec3) -> Option<Flat> {
     let sine_squared = 1.0 - direction.x * direction.x;
     if sine_squared >= WIDEST * WIDEST {
@@ -202,7 +203,7 @@ struct Line {
     /// Unit normal out of the head or face.
     normal: Vec3,
     shares: Shares<f64>,
-    /// Extent (m) of the line from its middle.
+    /// Half the length (m) of the line.
     length: f64,
 }
 
@@ -286,7 +287,7 @@ fn facing(normal: Vec3) -> Vec3 {
     if steep(&z) > steep(&steeper) { z } else { steeper }
 }
 
-/// Returns the patch of a head on the face of a block, in the frame of the block.
+/// Returns the contact patch of a head on the face of a block, in the frame of the block.
 fn head_on_block(
     block: &Block,
     barrel: &Barrel,

@@ -88,10 +88,12 @@ impl Bulk {
         Self { mass, center, second }
     }
 
-    /// Returns the principal moments of inertia (kg·m²) about the center of mass, and the rotation of their axes.
+    /// Returns the principal moments of inertia (kg·m²) about the center of mass, and the rotation from the frame of
+    /// the principal axes to the frame of the distribution.
     ///
-    /// Uses Jacobi's method, which rotates one plane after the other until the matrix is diagonal. For distributions
-    /// that are symmetric about the planes of their frame, the principal axes are the axes of the frame.
+    /// Uses Jacobi's method: each step eliminates the largest off-diagonal element by a rotation about one axis, until
+    /// the matrix is diagonal. For distributions that are symmetric about the planes of their frame, the principal axes
+    /// are the axes of the frame.
     pub fn principal(&self) -> (Vec3, Quaternion) {
         let mut turned = Quaternion::identity();
         let mut second = self.second;
@@ -291,14 +293,14 @@ fn integral<const N: usize>((from, to): (f64, f64), of: impl Fn(f64) -> [f64; N]
     sum
 }
 
-/// Returns the contributions of a thin disc, per length, to the integrals of [`Revolved`]. The disc has a radius (m)
-/// and a position (m) along the axis.
+/// Returns the contributions of a thin disc, per length, to the integrals of [`Revolved`]. `x` is the position (m) of
+/// the disc along the axis, and `r` its radius (m).
 fn disc(x: f64, r: f64) -> [f64; 3] {
     let area = std::f64::consts::PI * r * r;
     [area, area * x * x, 0.25 * area * r * r]
 }
 
-/// Doubles the integrals of one half of a symmetric body.
+/// Returns the integrals over a symmetric body, given those over one half of it in the order of [`Revolved`].
 fn doubled([volume, along, across]: [f64; 3]) -> Revolved {
     Revolved { volume: 2.0 * volume, along: 2.0 * along, across: 2.0 * across }
 }
@@ -321,8 +323,8 @@ fn revolved(barrel: &Barrel) -> Revolved {
     doubled(std::array::from_fn(|i| of_stave[i] + of_chime[i]))
 }
 
-/// Returns the integrals over the space inside the staves of a barrel with a wall thickness (m), up to the distance
-/// `end` (m) on both sides of the middle.
+/// Returns the integrals over the space inside the staves of a barrel, up to the distance `end` (m) on both sides of
+/// the middle. `wall` is the thickness (m) of the staves.
 fn within(barrel: &Barrel, wall: f64, end: f64) -> Revolved {
     doubled(integral((0.0, end), |x| disc(x, stave(barrel, x) - wall)))
 }

@@ -1,9 +1,12 @@
-//! Boundaries in three dimensions: ball, half-space, capsule, block, barrel of revolution, and dish. All except the
-//! dish are convex cores grown by a radius. At usual penetrations the cores remain separate, so only distances of
-//! separate convex bodies are needed. A target computes the distance of a point ([`Surface::gap`]); a capsule, a block
-//! or a barrel touches as a whole ([`Rounded`]), a ball with its center
-//! ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet and legs with their points
-//! ([`Nodes::Fixed`](crate::body::Nodes::Fixed)). Each file has one solid; [`Solid`] lists them.
+//! Boundaries in three dimensions: ball, half-space, capsule, block, barrel of revolution, and dish ([`Solid`]).
+//!
+//! Each solid except the dish consists of all points within a certain distance of a convex core. At usual penetrations
+//! the cores remain separate, so only distances of separate convex bodies are needed.
+//!
+//! A target computes the distance of a point from its surface ([`Surface::gap`]). A ball as contactor is represented by
+//! its center ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet and legs by their points
+//! ([`Nodes::Fixed`](crate::body::Nodes::Fixed)). For a capsule, a block or a barrel as contactor, the contact is
+//! computed from its whole shape ([`Rounded`]).
 
 mod barrel;
 mod block;

@@ -36,9 +36,9 @@ pub struct Rounded<R = f64> {
     pub tributary_length: R,
 }
 
-/// Numbers of tangential springs of a line contact and of a face contact: one at the center of pressure, and two along
-/// each axis of the patch.
+/// Number of tangential springs of a line contact: one at the center of pressure, and two along the line.
 const OF_LINE: usize = 3;
+/// Number of tangential springs of a face contact: one at the center of pressure, and two along each of two axes.
 const OF_FACE: usize = 5;
 /// Number of tangential springs of a block on the half-space: one for each corner.
 const CORNERS: usize = 8;
@@ -151,7 +151,7 @@ fn midway<R: Real>(point: Vec3<R>, gap: Gap<Spatial<R>>) -> Touch<Spatial<R>> {
     Touch { node: point + gap.normal * (gap.distance * R::splat(0.5)), gap }
 }
 
-/// Returns the contact point of a ball with a radius (m) on the half-space.
+/// Returns the contact point of a ball on the half-space, given the center (m) and the radius (m) of the ball.
 #[inline(always)]
 fn on_plane<R: Real>(center: Vec3<R>, radius: R) -> Touch<Spatial<R>> {
     let up = Vec3::new(R::zero(), R::zero(), R::splat(1.0));
@@ -186,7 +186,8 @@ fn standing<R: Real>(
     Patch { first: 0, deepest: place(barrel.furthest(down)), spread: Some(spread) }
 }
 
-/// Returns the patch of two bounded solids, lane by lane.
+/// Returns the contact patch of two bounded solids. It is computed lane by lane, except for the closest points of a
+/// tube and a barrel in a bundle.
 #[inline(always)]
 fn meeting<R: Real>(
     hull: &Hull<R>,
@@ -250,7 +251,7 @@ fn meeting<R: Real>(
 /// Closest points of a tube and a barrel, in all lanes together.
 struct TubeOnBarrel<R: Real> {
     gap: Gap<Spatial<R>>,
-    /// The closest point (m) of the contactor.
+    /// Point (m) of the contactor that is closest to the target.
     point: Vec3<R>,
     /// The lanes in which the search found the closest points.
     found: R::Mask,
@@ -258,7 +259,8 @@ struct TubeOnBarrel<R: Real> {
     along: R,
 }
 
-/// Returns the closest points of a tube and a barrel in bundles; `None` for all other solids, and in a single run.
+/// Returns the closest points of a tube and a barrel, computed in all lanes of a bundle together. Returns `None` for
+/// all other solids, and for a single run, which has only one lane.
 #[inline(always)]
 fn tube_on_barrel<R: Real>(
     hull: &Hull<R>,
@@ -377,7 +379,7 @@ impl<R: Real> Hull<R> {
         }
     }
 
-    /// Returns distance and normal at a point (m).
+    /// Returns the signed distance (m) of a point from the surface of the hull, and the surface normal.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         match self {
@@ -419,7 +421,7 @@ impl Hull {
     }
 }
 
-/// Returns a bounded convex surface in one lane; a ball is returned as a capsule of zero length. Returns `None` for
+/// Converts one lane of a bounded convex surface to a hull; a ball becomes a capsule of zero length. Returns `None` for
 /// other surfaces.
 #[inline(always)]
 fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {

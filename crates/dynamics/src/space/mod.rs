@@ -46,7 +46,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
 
     /// The scalar.
     type Real: Real;
-    /// The same space with a single number as its scalar, for one lane of a bundle.
+    /// The same space with `f64` as its scalar, for one lane of a bundle.
     type Single: Space<Real = f64>;
     /// Positions (m), velocities (m/s) and forces (N).
     type Vector: Linear<Self::Real> + Lanewise<Single = <Self::Single as Space>::Vector>;
@@ -174,11 +174,12 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         rotation: Self::Rotation,
         spin: Self::Spin,
     ) -> Self::Real;
-    /// Returns the part of a vector that is tangent to a surface with this unit normal.
+    /// Returns the tangential component of a vector, for a surface with this unit normal.
     fn tangential(vector: Self::Vector, normal: Self::Vector) -> Self::Tangent;
     /// Converts a tangent to a vector, for a surface with this unit normal.
     fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
-    /// Returns the data stored with the tangents of a surface whose unit normal is given in a rotated frame.
+    /// Returns the data stored with the tangents of a surface, given its unit normal in a rotated frame and the
+    /// rotation from that frame to the inertial frame.
     fn tangent_plane(rotation: Self::Rotation, normal: Self::Vector) -> Self::TangentPlane;
     /// Transports a tangent from one tangent plane into another.
     fn carry(

@@ -9,9 +9,9 @@ use crate::real::Real;
 /// A vector in the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec2<R = f64> {
-    /// Component to the right.
+    /// Horizontal component, positive to the right.
     pub x: R,
-    /// Component upward.
+    /// Vertical component, positive upward.
     pub z: R,
 }
 

@@ -84,8 +84,8 @@ impl<R: Real> Space for Spatial<R> {
     fn turn(orientation: Quaternion<R>, spin: Vec3<R>, time: R) -> Quaternion<R> {
         Quaternion::turn(spin * time).after(orientation).normalized()
     }
-    /// Returns the rotation vector, computed with the series of `asin s / s`. The result is accurate to 1e-14 rad for
-    /// rotations below 0.2 rad, and too small for larger rotations.
+    /// Computes the rotation vector from the truncated power series of `asin s / s`, where `s` is the sine of half the
+    /// angle. The result is accurate to 1e-14 rad for rotations below 0.2 rad. Larger rotations are underestimated.
     #[inline(always)]
     fn turn_between(from: Quaternion<R>, to: Quaternion<R>) -> Vec3<R> {
         let turn = to.after(from.back());
@@ -99,8 +99,8 @@ impl<R: Real> Space for Spatial<R> {
         // A quaternion and its negative are the same rotation.
         turn.v * (series * R::select(turn.w.lt(R::zero()), -two, two))
     }
-    /// Computes an upper bound from the chord `d = 2 sin(θ/4)` between the quaternions. The chord is at most √2, and
-    /// the arc is then 1.1108 times as long as the chord.
+    /// Computes an upper bound from the chord `d = 2 sin(θ/4)` between the quaternions, whose arc is `θ/2`. The chord
+    /// is at most √2, so the arc is at most 1.1108 times as long as the chord.
     #[inline(always)]
     fn angle_between(a: Quaternion<R>, b: Quaternion<R>) -> R {
         let square = |w: R, v: Vec3<R>| w * w + v.dot(v);
@@ -115,8 +115,9 @@ impl<R: Real> Space for Spatial<R> {
     fn momentum(inertia: Vec3<R>, rotation: Rotation3<R>, spin: Vec3<R>) -> Vec3<R> {
         rotation.apply(rotation.unapply(spin).times(inertia))
     }
-    /// Refines the result by one iteration, since a rotation matrix is orthogonal only up to rounding, and a systematic
-    /// error would accumulate over a run.
+    /// Corrects the spin once by the spin that corresponds to the remaining error of the momentum (iterative
+    /// refinement). A rotation matrix is orthogonal only up to rounding, and a systematic error would accumulate over a
+    /// run.
     #[inline(always)]
     fn spin_of(inertia: Vec3<R>, orientation: Quaternion<R>, momentum: Vec3<R>) -> Vec3<R> {
         let rotation = orientation.matrix();

@@ -9,11 +9,11 @@ use crate::real::Real;
 /// A vector in three dimensions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec3<R = f64> {
-    /// Component to the right.
+    /// Horizontal component, positive to the right.
     pub x: R,
-    /// Component away from the viewer.
+    /// Horizontal component, positive away from the viewer.
     pub y: R,
-    /// Component upward.
+    /// Vertical component, positive upward.
     pub z: R,
 }
 
