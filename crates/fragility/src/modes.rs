@@ -76,7 +76,7 @@ impl Shares {
 mod tests {
     use super::*;
 
-    /// Returns failures that follow a known division into three modes.
+    /// Returns failures in three modes, whose shares at each of 40 intensities are those of `truth`.
     fn divided(truth: &Shares) -> Vec<(f64, usize)> {
         let mut failures = vec![];
         for i in 0..40 {

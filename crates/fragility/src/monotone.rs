@@ -31,19 +31,19 @@ pub struct Monotony {
     /// p-value: the probability of a `deviance` at least as large as this one if failure never becomes less
     /// likely with intensity.
     pub p: f64,
-    /// All decreases of the fractions, whether significant or not. There is one for each range in which the
-    /// nondecreasing probability is constant.
+    /// All decreases of the fractions, whether significant or not. There is one for each range of stripes
+    /// that have the same isotonic probability.
     pub falls: Vec<Fall>,
 }
 
 impl Monotony {
-    /// Returns the decreases that are significant at a level of significance, such as 0.05.
+    /// Returns the decreases that are significant at `level`, such as 0.05.
     pub fn significant(&self, level: f64) -> impl Iterator<Item = &Fall> {
         self.falls.iter().filter(move |fall| fall.p < level)
     }
 }
 
-/// Adjacent stripes that have the same nondecreasing probability.
+/// Adjacent stripes that have the same isotonic probability.
 struct Pool {
     first: usize,
     last: usize,
@@ -140,7 +140,8 @@ pub fn monotony(
 /// Returns the two stripes between which the fraction decreases most; the stripe of lower intensity comes
 /// first.
 ///
-/// If there are several such pairs, the one with the closest stripes is returned.
+/// If there are several such pairs, the one whose first stripe has the highest intensity is returned; if there are
+/// several of these, the one whose second stripe has the lowest intensity.
 fn steepest(stripes: &[Stripe]) -> Option<(Stripe, Stripe)> {
     let mut found: Option<(f64, Stripe, Stripe)> = None;
     for (i, from) in stripes.iter().enumerate() {
@@ -160,7 +161,7 @@ fn steepest(stripes: &[Stripe]) -> Option<(Stripe, Stripe)> {
 /// Group of cases that failed at one intensity and stood at a higher one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Returned {
-    /// Number of the group.
+    /// Number that identifies the group.
     pub group: usize,
     /// Lowest intensity at which the group failed.
     pub failed: f64,
@@ -171,7 +172,7 @@ pub struct Returned {
 /// Returns the groups that failed at one intensity and stood at a higher one. A group is, for example, all cases of one
 /// record.
 ///
-/// Each case is a triple `(group, intensity, failed)`. No statistical test is made.
+/// Each case is a triple `(group, intensity, failed)`. No statistical test is performed.
 pub fn returns(cases: impl IntoIterator<Item = (usize, f64, bool)>) -> Vec<Returned> {
     let mut bounds: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
     for (group, intensity, failed) in cases {

@@ -15,7 +15,8 @@ use crate::proportion::Interval;
 /// smallest representable number.
 const CERTAIN: f64 = 38.0;
 
-/// Profile likelihood: the likelihood of evidence if the score at `ln x = place` is prescribed.
+/// Profile likelihood of the evidence: the highest likelihood of all curves that have a given normal score at a given
+/// intensity.
 struct Profile<'a> {
     evidence: &'a [Evidence],
     dispersion: Dispersion,
@@ -44,9 +45,11 @@ impl<'a> Profile<'a> {
         Ok((profile, found))
     }
 
-    /// Returns the difference of two log-likelihoods: that at the ends of the confidence interval, minus the largest
-    /// one of all curves that have the given score at `ln x = place`. The difference is negative for scores inside the
-    /// interval.
+    /// Returns how far the profile log-likelihood lies below its value at the ends of the confidence interval. The
+    /// result is negative inside the interval.
+    ///
+    /// The profile log-likelihood is the largest log-likelihood of all curves that have the normal score `score` at
+    /// `ln x = place`.
     fn excess(&self, place: f64, score: f64) -> f64 {
         let highest = match self.dispersion {
             Dispersion::Free => {

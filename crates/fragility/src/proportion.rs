@@ -51,8 +51,8 @@ pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
 
 /// Returns the largest proportion of a population that a sample of `count` observations may plausibly miss completely.
 ///
-/// The probability that the sample misses this proportion is `(1 − level)/2`, one tail of an interval with the
-/// confidence `level`.
+/// A part of the population that makes up this proportion is missed with the probability `(1 − level)/2`. This is the
+/// probability of one tail of a two-sided confidence interval with the level `level`.
 pub fn unobserved(count: usize, level: f64) -> f64 {
     if count == 0 { 1.0 } else { 1.0 - exp(ln(0.5 * (1.0 - level)) / count as f64) }
 }

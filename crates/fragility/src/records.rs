@@ -162,13 +162,12 @@ pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
     }
 }
 
-/// Returns the confidence interval of the mean of paired differences, one per group; `None` for fewer than two
-/// differences.
+/// Returns the confidence interval of the mean of paired differences; `None` for fewer than two differences.
 ///
-/// Each difference lies between `-most` and `most`. The interval is Student's. It is widened like that of
-/// [`grouped_mean`], since a few differences may agree by chance. If one of `tries` such intervals is
-/// selected, the level applies to all of them together (Bonferroni), so that the best of many differences is
-/// not overrated.
+/// `differences` holds one difference for each group, between `-most` and `most`. The interval is based on Student's t
+/// distribution. It is widened like that of [`grouped_mean`], since a few differences may agree by chance. `tries` is
+/// the number of such intervals from which one is selected. The level applies to all of them together (Bonferroni), so
+/// that the best of many differences is not overrated.
 pub fn mean_difference(
     differences: &[f64],
     most: f64,

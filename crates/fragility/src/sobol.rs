@@ -112,7 +112,8 @@ fn mixed(seed: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Scrambles binary digits: a seed and the digits before a digit determine whether the digit is flipped.
+/// Scrambles the binary digits of a number (Owen 1995). Whether a digit is flipped depends only on the seed and on the
+/// more significant digits.
 fn nested(digits: u32, seed: u32) -> u32 {
     // The bits are reversed, because in sums and products a bit depends only on itself and on the lower bits.
     let mut x = digits.reverse_bits().wrapping_add(seed);

@@ -7,14 +7,14 @@ use crate::sobol;
 /// Minimum number of runs to which a [`Conditional`] share is fitted.
 pub const FEWEST_RUNS: usize = 16;
 
-/// Number of points over which a share is averaged; a point holds a value of every constant.
+/// Number of draws of the constants over which a share is averaged.
 const AVERAGED: usize = 32;
 
 /// Step between the samples that [`Conditional::difference`] and [`Conditional::at`] use: every sixth of the kept
 /// samples.
 const THINNED: usize = 6;
 
-/// Number of discarded samples and number of kept samples of the posterior distribution.
+/// Number of discarded (burn-in) samples and number of kept samples of the posterior distribution.
 const SAMPLES: [usize; 2] = [400, 3000];
 
 /// Degrees of freedom of Student's t distribution, which is the prior distribution of the coefficients `g`, `aⱼ`,
@@ -39,11 +39,11 @@ const PRIOR_SLOPE: f64 = 4.0;
 /// Scale of the prior distribution of `bₓ`, by which the share at a single intensity departs from the curve.
 const PRIOR_LEVELS: f64 = 0.3;
 
-/// Index in a sample of `b`, the constant term of the regression: the middle of the values of `η` ([`Conditional`]).
+/// Index of the constant term `b` of the regression in a sample of [`Conditional`].
 const MIDDLE: usize = 1;
 
-/// Standard deviation of the normal prior distribution of the middle, which is `b` in [`Conditional`] and `b₀` in
-/// [`Intensities`]. The mean of this distribution is 0.
+/// Standard deviation of the normal prior distribution of the constant term, which is `b` in [`Conditional`] and `b₀`
+/// in [`Intensities`]. The mean of this distribution is 0.
 const PRIOR_MIDDLE: f64 = 2.5;
 
 /// A run with randomly drawn constants.
@@ -84,11 +84,11 @@ pub struct Conditional {
 /// Influence of one constant on the share of failures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Influence {
-    /// Total index: the fraction of the variance of the share that remains if all other constants are known,
-    /// including interactions.
+    /// Total Sobol' index: the fraction of the variance of the share that remains if all other constants are known.
+    /// It includes the interactions of this constant with the others.
     pub total: f64,
-    /// Width of the range in which the share lies if this constant is known exactly and all other constants are
-    /// unknown; the mean over the values of this constant.
+    /// Width of the credible interval of the share if this constant is known exactly and all other constants are
+    /// unknown. The width depends on the value of this constant; this is its mean over these values.
     pub width_if_known: f64,
 }
 
@@ -123,7 +123,7 @@ pub fn conditional(runs: &[DrawnRun], mut uniform: impl FnMut() -> f64) -> Optio
     Some(Conditional::new(samples, independent(unknowns)))
 }
 
-/// Returns the correlations of constants that are independent of each other.
+/// Returns the correlation matrix of independent constants, which is the identity matrix.
 fn independent(unknowns: usize) -> Vec<Vec<f64>> {
     let row = |i| (0..unknowns).map(|j| f64::from(u8::from(i == j))).collect();
     (0..unknowns).map(row).collect()
@@ -132,12 +132,13 @@ fn independent(unknowns: usize) -> Vec<Vec<f64>> {
 /// Prior distribution of a coefficient, with mean 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Prior {
-    /// Normal distribution with a standard deviation.
+    /// Normal distribution with this standard deviation.
     Normal(f64),
-    /// Student's t distribution with [`FREEDOM`] degrees of freedom and a scale.
+    /// Student's t distribution with [`FREEDOM`] degrees of freedom and this scale.
     Student(f64),
-    /// Normal distribution. All coefficients with this prior distribution have the same standard deviation, which is
-    /// itself uncertain; [`PRIOR_GROUPS`] is the scale of the prior distribution of this standard deviation.
+    /// Normal distribution whose standard deviation is common to all coefficients with this prior distribution. The
+    /// standard deviation is sampled together with the coefficients; [`PRIOR_GROUPS`] is the scale of its own prior
+    /// distribution.
     Group,
 }
 
@@ -215,12 +216,13 @@ fn posterior(
     samples
 }
 
-/// Run of a structure with randomly drawn constants, under one of several motions at an intensity.
+/// A run with randomly drawn constants, under one of several motions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shaken {
     /// Values of the unknown constants, as standard normal deviates.
     pub deviates: Vec<f64>,
-    /// Number of the motion. The outcomes of runs under the same motion are correlated, whatever the constants are.
+    /// Number that identifies the motion. The outcomes of runs under the same motion are correlated, whatever the
+    /// constants are.
     pub motion: usize,
     /// Intensity of the motion (> 0).
     pub intensity: f64,
@@ -228,7 +230,7 @@ pub struct Shaken {
     pub failed: bool,
 }
 
-/// Assumption on how the share of failures depends on the intensity.
+/// Assumption about how the share of failures depends on the intensity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// The share at each intensity may depart from a lognormal curve, so that it need not grow with the intensity.
@@ -301,8 +303,8 @@ pub fn shaken(
     Some(Intensities { samples, levels, middle, shape, correlations: independent(unknowns) })
 }
 
-/// Returns the factors by which the coefficients of `b(x)` are multiplied: 1 for `b₀`, `ln(x/x₀)` for `b₁`, and, for
-/// the `bₓ` of each level, 1 at that level and 0 at all other intensities.
+/// Returns the regressors of the coefficients of `b(x)`: 1 for `b₀`, `ln(x/x₀)` for `b₁`, and, for the `bₓ` of each
+/// level, 1 at that level and 0 at all other intensities.
 fn known(levels: &[f64], middle: f64, intensity: f64) -> Vec<f64> {
     let own = levels.iter().map(|level| f64::from(u8::from(*level == intensity)));
     [1.0, ln(intensity / middle)].into_iter().chain(own).collect()
@@ -316,7 +318,7 @@ fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 impl Intensities {
-    /// Returns the share for constants whose deviates have the given correlations, like [`Conditional::correlated`].
+    /// Returns this share with the given correlation matrix of the deviates, like [`Conditional::correlated`].
     #[must_use]
     pub fn correlated(self, correlations: Vec<Vec<f64>>) -> Self {
         Self { correlations, ..self }
@@ -383,8 +385,11 @@ pub fn share_less(first: &[f64], second: &[f64]) -> f64 {
 }
 
 impl Conditional {
-    /// Creates the share from samples of its coefficients, and draws values of the constants for every sample. The
-    /// values depend only on the number of the sample: samples with the same number have the same values in all shares.
+    /// Creates the share from samples of its coefficients, and draws one set of values of the constants for each
+    /// sample.
+    ///
+    /// A set depends only on the index of the sample and on the correlations. Two shares with the same correlations
+    /// therefore have the same sets.
     fn new(samples: Vec<Vec<f64>>, correlations: Vec<Vec<f64>>) -> Self {
         let lower = cholesky(correlations.clone());
         let point = |point| {
@@ -397,15 +402,15 @@ impl Conditional {
         Self { samples, points, correlations }
     }
 
-    /// Returns the share for constants whose deviates have the given correlations: a positive definite matrix with ones
-    /// on its diagonal. By default the constants are independent of each other.
+    /// Returns this share with the given correlation matrix of the deviates. The matrix is positive definite and has
+    /// ones on its diagonal. By default, the constants are independent of each other.
     #[must_use]
     pub fn correlated(self, correlations: Vec<Vec<f64>>) -> Self {
         Self::new(self.samples, correlations)
     }
 
-    /// Returns `point`, the values of all constants, with one constant fixed at a deviate. The other constants change
-    /// in proportion to their correlation with that constant.
+    /// Returns the values of all constants in `point`, with one constant set to `deviate`. Each other constant changes
+    /// by the change of that constant, multiplied by the correlation of the two.
     fn fixed(&self, point: &[f64], unknown: usize, deviate: f64) -> Vec<f64> {
         let change = deviate - point[unknown];
         let moved = point.iter().zip(&self.correlations[unknown]);
@@ -415,14 +420,15 @@ impl Conditional {
     }
 
     /// Returns the share in every draw. A draw combines a sample of the posterior distribution with values of the
-    /// constants. The values in a draw are the same for all shares that have the same constants in the same order.
+    /// constants. Two shares that have the same constants, in the same order and with the same correlations, use the
+    /// same values in each draw.
     pub fn shares(&self) -> Vec<f64> {
         let draws = self.samples.iter().zip(&self.points);
         draws.map(|(sample, point)| share(sample, point)).collect()
     }
 
     /// Returns the share for given constants (as standard normal deviates), computed with one sample of the
-    /// coefficients. Sample numbers beyond the last sample start again from the first.
+    /// coefficients. The index of the sample is `number` modulo the number of samples.
     ///
     /// # Panics
     /// If there are fewer deviates than constants.
@@ -430,9 +436,10 @@ impl Conditional {
         share(&self.samples[number % self.samples.len()], deviates)
     }
 
-    /// Returns the range in which the share lies with the probability `level`, given that the constants are
-    /// unknown. The constants are drawn from their own distributions, and the share from its posterior
-    /// distribution. The ends are rounded outward to hundredths.
+    /// Returns the credible interval that contains the share of failures with the probability `level`.
+    ///
+    /// The interval accounts for two uncertainties: the constants are drawn from their distributions, and the
+    /// coefficients from their posterior distribution. The ends are rounded outward to hundredths.
     pub fn range(&self, level: f64) -> Interval {
         let Interval { low, high } = self.range_given(level, None);
         Interval { low: (100.0 * low).floor() / 100.0, high: (100.0 * high).ceil() / 100.0 }
@@ -444,8 +451,8 @@ impl Conditional {
         mean(self.samples.iter().map(|sample| share(sample, &none)))
     }
 
-    /// Returns the influence of every constant. The widths are those of ranges that contain the share with the
-    /// probability `level`.
+    /// Returns the influence of every constant. `level` is the probability of the credible intervals whose widths are
+    /// returned.
     pub fn influences(&self, level: f64) -> Vec<Influence> {
         let totals = self.totals();
         let of = |(unknown, total): (usize, f64)| {
@@ -497,7 +504,7 @@ impl Conditional {
         ends(&shares, level)
     }
 
-    /// Returns the total index of every constant for the posterior mean of the share (Jansen 1999).
+    /// Returns the total Sobol' index of every constant for the posterior mean of the share (Jansen 1999).
     fn totals(&self) -> Vec<f64> {
         const POINTS: u32 = 128;
         let thinned = self.samples.len().div_ceil(64);
@@ -535,8 +542,7 @@ impl Conditional {
     }
 }
 
-/// Returns the factors of `b`, `aⱼ` and `cᵢⱼ`: 1, the deviates, and the products of two deviates (for a square, the
-/// square minus 1).
+/// Returns the regressors of `b`, `aⱼ` and `cᵢⱼ`: 1, the deviates `zⱼ`, and `zᵢ zⱼ − δᵢⱼ` for `i ≤ j`.
 fn terms(deviates: &[f64]) -> impl Iterator<Item = f64> {
     let second = move |i: usize| {
         let square = std::iter::once(deviates[i] * deviates[i] - 1.0);

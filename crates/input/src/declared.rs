@@ -106,7 +106,7 @@ fn is_plain(kind: Kind) -> bool {
     matches!(kind, Kind::Number(_))
 }
 
-/// An optional value, or a field that accepts a word in place of the value.
+/// An optional value. `None` stands for an absent field, or for the word that the field accepts ([`Kind::WordOr`]).
 impl<T: Held> Held for Option<T> {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         T::read_optional(reader, name)
@@ -161,8 +161,10 @@ impl<T: Declared> Held for Vec<T> {
     }
 }
 
-/// A member of a closed set. If the field is absent and its default is derived, the first member is
-/// returned as a placeholder, which the caller replaces.
+/// A member of a closed set.
+///
+/// If the field is absent and has no fixed default, the first member is read as a placeholder. The caller
+/// replaces it.
 impl<T: Named> Held for T {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         if reader.leaves_out(name) { Ok(T::NAMES[0].1) } else { reader.choice(name) }

@@ -165,7 +165,7 @@ pub enum Problem {
         /// Example of the text to write instead, with a valid value.
         example: String,
     },
-    /// A text that is not a quantity of the required dimension.
+    /// A string that is not a quantity of the required dimension.
     #[error("`{field}`: {reason}; write for example {example}")]
     Quantity {
         /// Path of the field.
@@ -228,7 +228,8 @@ fn suggestion(nearest: Option<&str>) -> String {
 }
 
 impl Problem {
-    /// Returns a note with the valid names or units, if such a note helps.
+    /// Returns a note for the user: the valid names, the valid units, or a hint about units that are easily
+    /// confused. Returns `None` if there is no such note for the problem.
     fn help(&self) -> Option<String> {
         if let Self::UnknownKey { valid, .. }
         | Self::ForeignKey { valid, .. }

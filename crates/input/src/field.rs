@@ -72,13 +72,13 @@ pub enum Default {
 /// Kind of value of a field.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
-    /// A text.
+    /// A string.
     Text,
-    /// A text, or an integer that is read as a text.
+    /// A string, or an integer that is read as a string.
     Label,
     /// `true` or `false`.
     Flag,
-    /// An integer from the first to the second bound, both included.
+    /// An integer from the first to the second bound, both inclusive.
     Integer(i64, i64),
     /// A plain number, or a percentage.
     Number(Range),
@@ -94,9 +94,9 @@ pub enum Kind {
     Triple(Dimension),
     /// A list of points.
     Points(Dimension),
-    /// A list of two texts.
+    /// A list of two strings.
     Pair,
-    /// A text, or `false`.
+    /// A string, or `false`.
     TextOrFalse,
     /// One of a list of names.
     Choice(fn() -> Vec<&'static str>),
@@ -104,7 +104,7 @@ pub enum Kind {
     Table(&'static Section),
     /// A list of tables; an override addresses an item by its name or its number.
     Tables(&'static Section),
-    /// A list of texts.
+    /// A list of strings.
     Texts,
     /// A single value whose kind depends on another field.
     Value,
@@ -138,12 +138,12 @@ impl Range {
     /// Zero or greater.
     pub const NOT_NEGATIVE: Self = Self { least: 0.0, above: false, greatest: VAST };
 
-    /// Creates a range from the smallest to the largest value, both included.
+    /// Creates a range from `least` to `greatest`, both inclusive.
     pub const fn between(least: f64, greatest: f64) -> Self {
         Self { least, above: false, greatest }
     }
 
-    /// Creates a range of positive numbers up to the largest value, included.
+    /// Creates a range of positive numbers up to and including `greatest`.
     pub const fn up_to(greatest: f64) -> Self {
         Self { least: 0.0, above: true, greatest }
     }

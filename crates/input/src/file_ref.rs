@@ -23,7 +23,7 @@ pub struct FileRef {
     pub path: String,
     /// Folder of the referring file; empty for the current folder.
     pub folder: PathBuf,
-    /// `true` if the path was given by the caller instead of read from a file.
+    /// `true` if the path was given by the caller, `false` if it was read from a file.
     is_of_caller: bool,
     /// Content of the file, if loaded.
     bytes: Option<Arc<[u8]>>,
@@ -35,13 +35,13 @@ impl FileRef {
         Self { path: path.into(), folder, is_of_caller: false, bytes: None }
     }
 
-    /// Creates a reference given by the caller, relative to the current folder.
+    /// Creates a reference from a path that the caller gives, relative to the current folder.
     pub fn of_caller(path: impl Into<String>) -> Self {
         Self { is_of_caller: true, ..Self::new(path, PathBuf::new()) }
     }
 
-    /// Returns `true` if the path was given by the caller. A path read from a file may have been
-    /// written by somebody else.
+    /// Returns `true` if the path was given by the caller, and `false` if it was read from a file. A path
+    /// in a file cannot be trusted, since somebody else may have written the file.
     pub fn is_of_caller(&self) -> bool {
         self.is_of_caller
     }

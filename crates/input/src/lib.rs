@@ -9,7 +9,7 @@
 //! - the [JSON Schema](schema) for editors;
 //! - the [`reference`](mod@reference) in Markdown.
 //!
-//! What a field means to the domain is up to the caller.
+//! This crate does not know what the fields stand for; their interpretation is up to the caller.
 
 // Results must be bit-identical on every machine, and so must the input numbers (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
@@ -44,7 +44,7 @@ pub use fingerprint::fnv1a;
 pub use listing::{Setting, Source};
 pub use quantity::{Quantity, QuantityError};
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

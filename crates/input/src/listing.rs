@@ -19,15 +19,16 @@ pub struct Setting {
     pub source: Source,
 }
 
-/// Source of a value. It is inferred from the value itself, since the table does not record where a value was stated.
+/// Source of a value. The table does not record whether a value was given or is a default. The source is therefore
+/// inferred from the value and the default of its field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The value is written in the file, or in a file that it extends.
     Given,
     /// The value equals the default of the field.
     Default,
-    /// The field has a derived default, which the text describes. The value is either this default, or was written in
-    /// the file.
+    /// The field has a derived default, which the string describes. The value is either this default, or was written
+    /// in the file.
     Derived(&'static str),
 }
 
@@ -45,8 +46,8 @@ impl Source {
 /// Lists every value of a table, in the order of the table. All defaults must be written out in the
 /// table.
 ///
-/// Items of lists are identified by their name or by the pair they join, otherwise by their number
-/// from 1, as in overrides.
+/// Items of lists are identified as in overrides: by their `name`, by the two names in their `between` field, or
+/// else by their number from 1.
 pub fn settings(table: &Table, section: &'static Section) -> Vec<Setting> {
     let mut settings = Vec::new();
     gather(&mut settings, table, section, "");

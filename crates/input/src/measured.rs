@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::system;
 use crate::{Dimension, Quantity};
 
-/// Remedy suggested for a cell that does not hold a number.
+/// Remedy suggested for a cell that should hold a number but does not.
 const CORRECT: &str = "correct it, or remove the row (the decimal mark is a point)";
 
 /// Largest size of a file of measurements (bytes).
@@ -78,7 +78,7 @@ fn in_column(column: Option<&str>) -> String {
 pub enum CellContent {
     /// An empty cell.
     Empty,
-    /// The word that replaces a number.
+    /// The word that is accepted in place of a number, as passed to [`Table::entries`].
     Word,
     /// A value, in SI units.
     Number(f64),

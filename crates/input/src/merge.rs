@@ -122,7 +122,7 @@ pub fn expand_names(table: &mut Table, section: &'static Section) {
     }
 }
 
-/// Applies one override, written `path=value`; `index` is the index of the override in the sources.
+/// Applies one override, written `path=value`; `index` is its index in [`Sources::overrides`].
 fn apply_override(
     table: &mut Table,
     section: &'static Section,

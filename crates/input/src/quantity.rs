@@ -15,7 +15,7 @@ pub struct Quantity {
     pub dimension: Dimension,
 }
 
-/// A reason why a text is not a valid quantity.
+/// A reason why a string is not a valid quantity.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum QuantityError {
     /// The text does not start with a decimal number.
@@ -98,7 +98,7 @@ impl Quantity {
         }
     }
 
-    /// Returns all possible interpretations of a text as a quantity. A number without a unit is
+    /// Returns all possible interpretations of a string as a quantity. A number without a unit is
     /// accepted only if a plain number is wanted.
     fn readings(text: &str, wanted: &[Dimension]) -> Result<Vec<Self>, QuantityError> {
         let trimmed = text.trim();
@@ -149,7 +149,7 @@ impl Quantity {
         })
     }
 
-    /// Suggests a replacement for a text that is not a quantity of a dimension in `wanted`.
+    /// Suggests a replacement for a string that is not a quantity of a dimension in `wanted`.
     ///
     /// The suggestion adds a missing unit, or replaces a wrong unit with the unit that was probably meant. If neither
     /// is possible, the suggestion is an example value. The suggestion always parses as a quantity of one of the
@@ -180,15 +180,15 @@ impl Quantity {
     }
 }
 
-/// Formats the quantity in SI units, with the fewest digits that read back to the same bits.
+/// Formats the quantity in SI units, with the fewest digits that parse to exactly the same value.
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", plain(self.value), self.dimension.si_unit())
     }
 }
 
-/// Formats a number with the fewest digits that read back to the same bits. An exponent is used if
-/// the number is very large or very small.
+/// Formats a number with the fewest digits that parse to exactly the same value. An exponent is used
+/// if the number is very large or very small.
 pub fn plain(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-5..1e15).contains(&size) {
@@ -203,7 +203,7 @@ pub fn rounded(value: f64) -> f64 {
     format!("{value:.4e}").parse().unwrap_or(value)
 }
 
-/// Truncates a text to 60 characters, for error messages.
+/// Truncates a string to 60 characters, for error messages.
 pub fn shorten(text: &str) -> String {
     const LIMIT: usize = 60;
     if text.chars().count() <= LIMIT {
@@ -247,8 +247,8 @@ impl<'a> Decimal<'a> {
         Some((Self { negative: text.starts_with('-'), digits, exponent, text: taken }, rest))
     }
 
-    /// Returns the number in SI units. The result is exact up to one rounding for decimal units and
-    /// up to a few roundings for others.
+    /// Returns the number multiplied by the scale of its unit, that is, in SI units. The result is
+    /// exact up to one rounding for decimal units and up to a few roundings for others.
     fn times(&self, scale: &Scale) -> f64 {
         let sign = if self.negative { -1.0 } else { 1.0 };
         if self.digits.is_empty() {
@@ -280,7 +280,7 @@ impl<'a> Decimal<'a> {
     }
 }
 
-/// Splits a text after its leading digits.
+/// Splits a string after its leading digits.
 fn split_digits(text: &str) -> (&str, &str) {
     text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()))
 }
