@@ -1,14 +1,14 @@
-//! Generates the reference of an input file in Markdown from the definition of its fields.
+//! Generates reference documentation for a kind of input file, in Markdown, from the definition of its fields.
 
 use std::fmt::Write as _;
 
 use crate::field::{Default, Field, Kind, Range, Section};
 use crate::unit;
 
-/// Returns the reference of a file with the given top-level section.
+/// Returns reference documentation for files with the top-level section `top`.
 ///
-/// Sections in `elsewhere` are documented on another page. For these sections, the text only refers
-/// to the page with the name `there`.
+/// The sections named in `elsewhere` are documented on another page. In place of their fields, the
+/// documentation contains a sentence that ends in `there`: "`[…]` has the same fields as …".
 pub fn of_tables(top: &'static Section, elsewhere: &[&'static str], there: &str) -> String {
     let mut text = String::new();
     let mut documented: Vec<(&str, String)> =

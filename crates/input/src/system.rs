@@ -128,7 +128,7 @@ fn regular(of: &fs::Metadata) -> io::Result<()> {
     ))
 }
 
-/// Returns the kind of a path that is neither a file nor a folder, with its article, such as `a link`.
+/// Describes what a path names if this is neither a file nor a folder, for messages, such as `a link`.
 #[cfg(unix)]
 fn kind(of: &fs::Metadata) -> &'static str {
     use std::os::unix::fs::FileTypeExt as _;
@@ -251,8 +251,9 @@ pub fn open_to_change(path: &Path) -> io::Result<File> {
 
 /// Opens an existing regular file for modification.
 ///
-/// The file may have been replaced since it was checked. On Unix, the system therefore refuses
-/// links and does not wait for the other end of a pipe.
+/// The file may have been replaced since it was checked. On Unix, it is therefore opened with
+/// `O_NOFOLLOW`, which refuses symbolic links, and with `O_NONBLOCK`, which does not wait for the
+/// other end of a named pipe.
 fn open_unfollowed(path: &Path) -> io::Result<File> {
     let mut options = File::options();
     #[cfg(unix)]
@@ -272,8 +273,8 @@ pub fn temporary(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Returns `true` if the path names an incomplete file left by a killed process: if the name of the file consists of a
-/// name that `meant` accepts and the suffix of [`temporary`].
+/// Returns `true` if the path names an incomplete file left by a killed process. The name of such a file consists of a
+/// file name, which `meant` must accept, and the suffix that [`temporary`] appends.
 pub fn is_unfinished(path: &Path, meant: impl Fn(&str) -> bool) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let Some((whole, process)) = name.strip_suffix(".part").and_then(|rest| rest.rsplit_once('.'))

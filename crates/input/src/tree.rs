@@ -42,7 +42,7 @@ pub struct Node {
 /// A TOML value.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// A text.
+    /// A string.
     Text(String),
     /// An integer; `None` if it does not fit into 64 bits.
     Integer(Option<i64>),
@@ -59,7 +59,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Describes the value with its article, for messages, such as `the number 3`.
+    /// Describes the value for messages, such as `the number 3` or `a list`.
     pub fn describe(&self) -> String {
         match self {
             Self::Text(text) => format!("the text \"{}\"", crate::quantity::shorten(text)),
@@ -128,7 +128,7 @@ pub struct SourceFile {
     pub folder: PathBuf,
 }
 
-/// The texts of all sources, needed to locate errors.
+/// All input files and overrides, needed to locate errors.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
     /// The files; an index into this list identifies a file.
@@ -201,7 +201,8 @@ impl Sources {
     }
 }
 
-/// Parses the value of an override or a default as TOML; if that fails, the value is a text.
+/// Parses the value of an override or a default as TOML. If `text` is not valid TOML, the value is `text` itself as a
+/// string, without leading and trailing whitespace.
 pub fn parse_value(text: &str, origin: Origin) -> Node {
     let trimmed = text.trim();
     DeValue::parse(trimmed).map_or_else(

@@ -10,8 +10,8 @@ pub(crate) struct Scale {
     pub(crate) denominator: u128,
     pub(crate) ten: i32,
     pub(crate) pi: i32,
-    /// Factor that is not exactly representable; it arises from half powers and from products
-    /// beyond 128 bits.
+    /// Part of the size that the other fields cannot represent exactly. It arises from half-integer
+    /// exponents and from products that overflow 128 bits.
     pub(crate) factor: f64,
 }
 
@@ -126,7 +126,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     UNITS.iter().map(|unit| unit.0)
 }
 
-/// An error in a unit expression, without the text that contains the expression.
+/// An error in a unit expression. [`UnitError::within`] adds the text that contains the expression.
 pub(crate) enum UnitError {
     Unknown { unit: String, nearest: Option<String> },
     Malformed(&'static str),
@@ -301,7 +301,7 @@ fn factor(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitErro
     Ok(unit)
 }
 
-/// Parses a power and returns twice its value: `2` gives 4, `1.5` gives 3.
+/// Parses an exponent and returns twice its value: `2` gives 4, `1.5` gives 3.
 fn halves(power: &str) -> Result<i8, UnitError> {
     let value: f64 =
         power.parse().map_err(|_| UnitError::Malformed("`^` must be followed by a power"))?;
@@ -337,8 +337,8 @@ fn named(name: &str) -> Result<Unit, UnitError> {
 /// Units of mass with the corresponding units of weight; the two are often confused.
 const WEIGHTS: &[(&str, &str)] = &[("kg", "kgf"), ("lb", "lbf"), ("t", "tonf")];
 
-/// Returns a unit expression in which each name is replaced by the result of `replace`, if this
-/// function returns a name.
+/// Replaces each name in a unit expression by the result of `replace`. A name for which `replace`
+/// returns `None` is kept.
 fn renamed(text: &str, replace: impl Fn(&str) -> Option<&'static str>) -> String {
     let mut out = String::new();
     let mut rest = text;
@@ -389,7 +389,7 @@ impl Unit {
         Self { scale: self.scale.times(other.scale), dimension: self.dimension + other.dimension }
     }
 
-    /// Returns the unit to the power `halves / 2`.
+    /// Returns the unit raised to the power `halves / 2`.
     fn power(self, halves: i8) -> Result<Self, UnitError> {
         let dimension =
             self.dimension.power(halves).ok_or(UnitError::Malformed("its powers are too large"))?;

@@ -66,7 +66,7 @@ impl Writer {
         self.table.entries.push(Entry { key: name.to_owned(), origin: Origin::Default, node });
     }
 
-    /// Marks fields as intentionally not written, because they are absent or replaced by others.
+    /// Marks fields as intentionally omitted, because they have no value or other fields replace them.
     pub fn omit(&mut self, names: &[&'static str]) {
         self.written.extend(names);
     }
@@ -108,7 +108,7 @@ impl Writer {
         self.optional(name, value, Self::quantity);
     }
 
-    /// Writes a quantity; if it is `None`, writes the word that replaces the quantity.
+    /// Writes a quantity, or the word given in [`Kind::WordOr`] if the quantity is `None`.
     pub fn word_or_quantity(&mut self, name: &'static str, value: Option<f64>) {
         match (value, self.field(name).kind) {
             (Some(value), _) => self.quantity(name, value),
@@ -132,22 +132,22 @@ impl Writer {
         self.put(name, Value::Flag(value));
     }
 
-    /// Writes a text.
+    /// Writes a string.
     pub fn text(&mut self, name: &'static str, value: &str) {
         self.put(name, Value::Text(value.to_owned()));
     }
 
-    /// Writes a text; omits the field if the text is `None`.
+    /// Writes a string; omits the field if the string is `None`.
     pub fn optional_text(&mut self, name: &'static str, value: Option<&str>) {
         self.optional(name, value, Self::text);
     }
 
-    /// Writes a member of a closed set.
+    /// Writes the name of a value of type `T`.
     pub fn choice<T: Named>(&mut self, name: &'static str, value: T) {
         self.text(name, value.name());
     }
 
-    /// Writes a list of two texts.
+    /// Writes a list of two strings.
     pub fn pair(&mut self, name: &'static str, value: &[String; 2]) {
         self.put(name, Value::Array(value.iter().map(|v| node(Value::Text(v.clone()))).collect()));
     }

@@ -20,7 +20,7 @@ impl Record {
     ///
     /// Channels are shifted by sinc interpolation with a squared-cosine window over 32 samples on
     /// each side. Below 80 % of the Nyquist frequency, the error is at most 1e-4 of the amplitude.
-    /// Channels with unknown start are not changed.
+    /// Channels with an unknown start time are not changed.
     ///
     /// # Errors
     /// If the channels have no common span.

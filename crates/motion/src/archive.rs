@@ -9,7 +9,8 @@ use crate::format::{LARGEST_UNPACKED, Source, shorten, zip};
 #[cfg(not(target_family = "wasm"))]
 mod tape;
 
-/// The WebAssembly build omits tar to stay small.
+/// Replacement for the tar reader in the WebAssembly build, which omits tar to stay small. No file is
+/// recognized as a tar archive.
 #[cfg(target_family = "wasm")]
 mod tape {
     pub(super) fn is_tar(_: &[u8]) -> bool {

@@ -13,8 +13,8 @@ const NAPA_COLLEGE: &[u8] = include_bytes!("../records/napa-college-2014.txt");
 ///
 /// `napa-college-2014` is the South Napa earthquake of 24 August 2014, M 6.0, at Napa College
 /// (CE.68150): E (PGA 0.373 g), N (0.339 g) and up (0.215 g), 200 Hz, 35 s. The series was cut
-/// after filtering, so plain integration drifts by half a meter. Its stage is therefore raw, and
-/// the default processing filters it again.
+/// after filtering, so plain integration drifts by half a meter. The file therefore states the
+/// processing stage [`Raw`](crate::Stage::Raw), and the default processing filters the series again.
 ///
 /// ```
 /// let napa = barrelstack_motion::bundled("napa-college-2014").unwrap();

@@ -27,8 +27,8 @@ pub struct Earthquake {
 }
 
 impl Earthquake {
-    /// Creates an earthquake from the first valid magnitude in a list of scales and magnitudes. The values 0 and −999
-    /// mean that a magnitude is unknown.
+    /// Creates an earthquake from the first valid magnitude in a list of pairs of scale and magnitude. The values 0
+    /// and −999 mean that a magnitude is unknown.
     pub(crate) fn of_magnitude<'a>(
         stated: impl IntoIterator<Item = (&'a str, Option<f64>)>,
     ) -> Self {

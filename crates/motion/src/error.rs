@@ -9,8 +9,8 @@ pub enum Refusal {
     Unrecognized,
     /// The file is valid but contains no acceleration history.
     NotAcceleration,
-    /// The file is inconsistent or violates its format: it is truncated, or contains overflowed or
-    /// wrong numbers.
+    /// The file is inconsistent or violates its format: it is truncated, or contains wrong numbers or
+    /// numbers that overflowed their columns.
     Damaged,
     /// The archive contains several records; the caller must name one.
     SeveralRecords,

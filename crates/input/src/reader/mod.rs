@@ -115,7 +115,7 @@ impl<'a> Reader<'a> {
         self.entry(name).is_some()
     }
 
-    /// Returns `true` if a field is absent and has no fixed default.
+    /// Returns `true` if a field is absent and its default is [`Default::Nothing`] or [`Default::Derived`].
     pub fn leaves_out(&self, name: &'static str) -> bool {
         !self.has(name)
             && matches!(self.field(name).default, Default::Nothing | Default::Derived(_))
@@ -284,8 +284,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Returns the name of a list item in paths: the value of its `name` field, the pair in its
-/// `between` field, or its number from 1.
+/// Returns the name of a list item in paths: the value of its `name` field; else the two names in its
+/// `between` field, joined by a hyphen; else its number, counted from 1.
 pub fn item_name(item: &Node, index: usize) -> String {
     let number = (index + 1).to_string();
     let Value::Table(table) = &item.value else { return number };
@@ -305,7 +305,7 @@ fn owned(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
 }
 
-/// Names used by other programs, with the corresponding names in this program.
+/// Names that users of other programs write out of habit, each with a corresponding name in this program.
 const HABITS: &[(&str, &str)] = &[
     ("mu", "coefficient"),
     ("mu", "friction"),

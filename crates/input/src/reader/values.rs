@@ -53,7 +53,10 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a quantity in SI units, or returns `None` for the word that replaces it.
+    /// Reads a quantity in SI units.
+    ///
+    /// Returns `None` if the value is the word given in [`Kind::WordOr`], or if the field is absent and has no fixed
+    /// default.
     pub fn word_or_quantity(&self, name: &'static str) -> Result<Option<f64>> {
         let value = self.value(name, |reader, field, node| {
             let Kind::WordOr(word, dimensions, range) = field.kind else {
@@ -148,12 +151,14 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a required text.
+    /// Reads a required string.
     pub fn text(&self, name: &'static str) -> Result<String> {
         self.required(name, self.optional_text(name))
     }
 
-    /// Reads an optional text. `false` counts as absent if the field allows it.
+    /// Reads an optional string.
+    ///
+    /// For [`Kind::Label`], an integer is converted to a string. For [`Kind::TextOrFalse`], `false` counts as absent.
     pub fn optional_text(&self, name: &'static str) -> Result<Option<String>> {
         let value = self.value(name, |reader, field, node| {
             let text = match (&node.value, field.kind) {
@@ -174,7 +179,7 @@ impl Reader<'_> {
         Ok(value.flatten())
     }
 
-    /// Reads an optional single value as written, for the caller to interpret.
+    /// Reads an optional value that is not a list, a table or a date. The caller interprets the value.
     pub fn node(&self, name: &'static str) -> Result<Option<Node>> {
         self.value(name, |reader, field, node| {
             if matches!(node.value, Value::Array(_) | Value::Table(_) | Value::Date) {
@@ -184,7 +189,9 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads an optional, nonempty list of single values as written.
+    /// Reads an optional, nonempty list whose items are not lists, tables or dates. The caller interprets the items.
+    ///
+    /// For [`Kind::Texts`], every item must be a string.
     pub fn nodes(&self, name: &'static str) -> Result<Option<Vec<Node>>> {
         self.value(name, |reader, field, node| {
             let Value::Array(items) = &node.value else {
@@ -205,7 +212,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a list of texts; the list is empty if the field is absent.
+    /// Reads a list of strings; the list is empty if the field is absent.
     pub fn texts(&self, name: &'static str) -> Result<Vec<String>> {
         let nodes = self.nodes(name)?.unwrap_or_default();
         let text =
@@ -226,12 +233,12 @@ impl Reader<'_> {
         }))
     }
 
-    /// Reads a required member of a closed set.
+    /// Reads a required value of type `T`, which the file contains by name.
     pub fn choice<T: Named>(&self, name: &'static str) -> Result<T> {
         self.required(name, self.optional_choice(name))
     }
 
-    /// Reads an optional member of a closed set.
+    /// Reads an optional value of type `T`, which the file contains by name.
     pub fn optional_choice<T: Named>(&self, name: &'static str) -> Result<Option<T>> {
         self.value(name, |reader, _, node| {
             let text = reader.read_name(name, node, &crate::field::names::<T>())?;
@@ -240,12 +247,12 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a required name from the field's list of names.
+    /// Reads a required name, which must be one of the names of [`Kind::Choice`].
     pub fn catalog_name(&self, name: &'static str) -> Result<String> {
         self.required(name, self.optional_catalog_name(name))
     }
 
-    /// Reads an optional name from the field's list of names.
+    /// Reads an optional name, which must be one of the names of [`Kind::Choice`].
     pub fn optional_catalog_name(&self, name: &'static str) -> Result<Option<String>> {
         self.value(name, |reader, field, node| {
             let Kind::Choice(names) = field.kind else { reader.defined_otherwise(name) };
@@ -253,7 +260,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a required list of two texts.
+    /// Reads a required list of two strings.
     pub fn pair(&self, name: &'static str) -> Result<[String; 2]> {
         let value = self.value(name, |reader, field, node| {
             if let Value::Array(items) = &node.value

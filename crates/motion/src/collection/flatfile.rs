@@ -34,8 +34,8 @@ pub struct Flatfile {
     stations: BTreeMap<(String, String, String), FlatRow>,
 }
 
-/// Names of the column that contains the record sequence number: first in the published table, then in its abridged
-/// forms. The constants below without a comment do the same for other columns.
+/// Names of the column with the record sequence number, in lower case: the name in the published table, then the names
+/// in abridged versions. The constants below without a comment contain the names of other columns.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
 const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
 const STATION: &[&str] = &["station name", "station", "station_code"];
@@ -164,8 +164,8 @@ pub fn record_sequence_number(path: &str) -> Option<u64> {
     digits[..end].parse().ok()
 }
 
-/// Returns the rows of a CSV table (RFC 4180), each with the number of the line on which it begins;
-/// empty lines are skipped.
+/// Returns the rows of a CSV table (RFC 4180) whose cells are separated by `mark`. Each row has the
+/// number of the line on which it begins. Rows of blank cells are skipped.
 fn rows(text: &str, mark: char) -> impl Iterator<Item = (usize, Vec<String>)> {
     let mut line = 1;
     let mut rest = text;

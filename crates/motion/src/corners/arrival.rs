@@ -4,8 +4,8 @@ use crate::math;
 
 /// Acceleration at which strong motion has certainly begun, as a fraction of the peak acceleration.
 const SURE: f64 = 0.2;
-/// Time between the latest estimate of the arrival and the end of the next search, as a fraction of the time before the
-/// strong motion. Before the first search, the estimate is the beginning of the strong motion; before the second
+/// Time by which each search for the arrival extends beyond the previous estimate, as a fraction of the time before the
+/// strong motion. For the first search, the previous estimate is the beginning of the strong motion; for the second
 /// search, it is the result of the first search.
 const BEHIND: f64 = 0.1;
 

@@ -58,7 +58,7 @@ pub struct Corners {
 }
 
 impl Corners {
-    /// Describes how the corners were derived, for the provenance.
+    /// Describes the corners, the signal-to-noise ratios between them and the noise, for messages and notes.
     pub fn sentence(&self, criterion: &NoiseCriterion) -> String {
         let unknown = 1.0 / self.arrival;
         format!(

@@ -8,7 +8,7 @@ use crate::math;
 /// W(f, fc) = (sin(b log10(f/fc)) / (b log10(f/fc)))⁴
 /// ```
 ///
-/// cut off where `b log10(f/fc)` exceeds 3 (Konno and Ohmachi 1998, BSSA 88:228-241). On a
+/// cut off where `|b log10(f/fc)|` exceeds 3 (Konno and Ohmachi 1998, BSSA 88:228-241). On a
 /// logarithmic frequency axis, the window has the same width everywhere.
 pub(super) fn konno_ohmachi(
     frequency: &[f64],

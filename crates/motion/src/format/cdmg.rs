@@ -87,8 +87,8 @@ fn read_renadic(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadEr
     Ok(record)
 }
 
-/// Reads every block of a volume 1 file. `indent` is the number of blanks before the pairs of time
-/// and value.
+/// Reads every block of a volume 1 file. Each line contains pairs of time and value after `indent`
+/// blanks, unless the values are equally spaced.
 fn read_blocks(
     source: &Source<'_>,
     hints: &Hints<'_>,
@@ -200,8 +200,8 @@ pub(crate) fn station_name(source: &Source<'_>, line: usize) -> String {
     text.trim_start().split("   ").next().unwrap_or("").trim().to_owned()
 }
 
-/// Parses the start time, such as `START TIME:  7/06/19, 03:19:37.0 UTC`, from the text lines. A film recorder starts
-/// at its trigger time.
+/// Parses the start time from the header, such as `START TIME:  7/06/19, 03:19:37.0 UTC`. `TRIGGER TIME:` is also
+/// accepted, because a film recorder starts at its trigger time.
 pub(crate) fn start(source: &Source<'_>, first: usize) -> Option<Utc> {
     (first..first + 6)
         .find_map(|line| Utc::in_header(&start_in(source, line)?, DateOrder::MonthFirst))
@@ -213,7 +213,7 @@ pub(crate) fn stated_start(source: &Source<'_>, first: usize) -> Option<(usize, 
     (first..first + 6).find_map(|line| Some((line, start_in(source, line)?)))
 }
 
-/// Returns the text after the key that announces a start time.
+/// Returns the text after `START TIME:` or `TRIGGER TIME:`.
 fn start_in(source: &Source<'_>, line: usize) -> Option<String> {
     let keys = ["START TIME:", "TRIGGER TIME:"];
     let at = keys.into_iter().find_map(|key| Some(source.find(line, key)? + key.len()))?;

@@ -1,4 +1,4 @@
-//! Detects scale factors in header texts. A file with a scale factor is refused, because it is
+//! Detects scale factors in header lines. A file with a scale factor is refused, because it is
 //! unknown whether the factor has been applied.
 
 use super::facts::{folded, says_acceleration, value_behind};
@@ -97,7 +97,8 @@ pub(super) fn is_unit_with_factor(text: &str) -> bool {
         })
 }
 
-/// Returns `true` if a text is a number other than 1, or a fraction such as `%`.
+/// Returns `true` if a text is a number other than 1, a quotient or power such as `1/10` or `10^-3`,
+/// or a word for a fraction, such as `%` or `tenths`.
 fn is_factor(text: &str) -> bool {
     let text = text.strip_suffix(" of").unwrap_or(text);
     let number = |text: &str| text.parse::<f64>().ok();

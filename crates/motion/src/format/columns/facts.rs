@@ -26,7 +26,7 @@ pub(super) struct Stated<T> {
 pub(super) struct Peak {
     pub(super) value: f64,
     pub(super) resolution: f64,
-    /// SI value of the unit; `None` if the peak is in the unit of the samples.
+    /// Factor that converts the peak to SI units; `None` if the peak is in the unit of the samples.
     pub(super) factor: Option<f64>,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct Facts {
     pub(super) possible_rate: Option<Stated<f64>>,
     /// Number of samples.
     pub(super) count: Option<Stated<usize>>,
-    /// Length of the record (s), and one unit of the last printed digit of this length (s).
+    /// Duration of the record (s) and its resolution (s): one unit in the last printed digit.
     pub(super) duration: Option<Stated<[f64; 2]>>,
     /// Unit of the samples.
     pub(super) unit: Option<Stated<MotionUnit>>,
@@ -60,7 +60,7 @@ impl Facts {
     /// Finds facts in header lines, except in lines of column names.
     ///
     /// # Errors
-    /// If two lines state different steps, or a line states a factor.
+    /// If two lines state different time steps, or a line states a scale factor.
     pub(super) fn read(
         source: &Source<'_>,
         lines: impl Iterator<Item = usize> + Clone,
@@ -113,8 +113,8 @@ impl Facts {
         Ok(facts)
     }
 
-    /// Returns the time step (s) computed from the number of samples and the duration, for the
-    /// remedy in an error.
+    /// Returns the time step (s) computed from the number of samples and the duration. An error
+    /// about a missing time step suggests this value.
     pub(super) fn step_by_duration(&self) -> Option<f64> {
         let (count, [duration, _]) = (self.count?.value, self.duration?.value);
         (count > 1).then(|| duration / count as f64)
@@ -167,9 +167,11 @@ pub(super) fn value_behind<'a>(text: &'a str, key: &str) -> Option<Value<'a>> {
     Some(Value { in_parentheses, printed, behind: word })
 }
 
-/// Splits a number off the start of a text and interprets its comma: in `0,005`, it is a decimal
-/// comma; in `3,200`, it is a thousands separator. If there is such a comma, also returns the
-/// length of the number in the text.
+/// Interprets the commas of a number at the start of a text: in `0,005`, the comma is a decimal
+/// comma; in `3,200`, it is a thousands separator.
+///
+/// Returns the number with a decimal point and without thousands separators, and the length of the
+/// number in the text. If there is no such comma, returns the unchanged text and `None`.
 fn number_with_comma(text: &str) -> (String, Option<usize>) {
     let end = text.find(|c: char| !c.is_ascii_digit() && c != ',').unwrap_or(text.len());
     let token = text[..end].trim_end_matches(',');
@@ -436,8 +438,8 @@ pub(in crate::format) fn unit(lower: &str) -> Option<MotionUnit> {
     groups.chain(after_in).chain(last).find_map(rate)
 }
 
-/// Returns `true` if a number or a fraction stands next to the unit, as in `0.001 g`, `% g`,
-/// `thousandths of g` or `g x 100`.
+/// Returns `true` if a factor stands next to the unit, as in `0.001 g`, `% g`, `thousandths of g` or
+/// `g x 100`. `unit` is the index of the unit in `words`.
 fn is_scaled(words: &[&str], unit: usize) -> bool {
     let before = words[..unit].iter().rev().find(|word| **word != "of").unwrap_or(&"");
     let shares = ["%", "percent", "tenth", "hundredth", "thousandth", "milli", "micro"];

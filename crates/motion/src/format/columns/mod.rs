@@ -321,7 +321,7 @@ fn accelerations(
 }
 
 /// Refuses placeholders for missing values among accelerations. `first` is the line of the first
-/// row, or `None` if rows are not single lines.
+/// row, or `None` if the rows of the table may differ from the lines of the file.
 fn require_no_mark(
     source: &Source<'_>,
     table: &[Vec<f64>],
@@ -432,8 +432,8 @@ fn require_duration(
     ))
 }
 
-/// Compares the number of samples with the number stated in the header, and cuts the columns to the
-/// number of samples to be used.
+/// Compares the number of samples with the number stated in the header, and truncates the columns to
+/// the number returned by `check_count`.
 fn counted(
     source: &Source<'_>,
     record: &mut Record,
@@ -477,8 +477,8 @@ fn initial_velocities(
     Ok(Vec::new())
 }
 
-/// Returns the SI factor of each column: from the unit next to its name, from the header, or from
-/// the caller.
+/// Returns the factor that converts each column to SI units. The unit is stated next to the name of
+/// the column, in the header, or by the caller.
 fn units(
     source: &Source<'_>,
     first: usize,

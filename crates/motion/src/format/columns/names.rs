@@ -42,7 +42,7 @@ impl Name {
         self.unit.as_deref().and_then(MotionUnit::parse)
     }
 
-    /// Returns `true` if the name denotes the length of a vector, such as a resultant.
+    /// Returns `true` if the name denotes the magnitude of a vector, such as a resultant.
     pub(super) fn says_length(&self) -> bool {
         let lower = self.label.to_lowercase();
         let mut words = lower.split(|c: char| !c.is_alphanumeric());
@@ -114,8 +114,8 @@ fn plain(text: &str) -> &str {
     text.trim_start_matches(['#', '%', '!', '/', ' ', '|']).trim_end_matches(['|', ' ', ',', ';'])
 }
 
-/// Splits a line once for each possible separator. The flag is `true` if the
-/// separator does not occur in prose.
+/// Splits a line at each possible separator in turn and returns one list of parts per separator. The
+/// flag is `true` if the separator does not occur in prose.
 fn splits(text: &str) -> Vec<(bool, Vec<String>)> {
     let tidy = |part: &str| part.trim().trim_matches(['"', '\'']).trim().to_owned();
     let by = |mark: char| text.split(mark).map(tidy).collect::<Vec<_>>();
@@ -151,8 +151,9 @@ fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
 
 /// Returns the first word that is not a known unit, if the line is otherwise a row of units.
 ///
-/// A line is a row of units if more than half of its words are units. Exactly half of the words is sufficient, unless
-/// the other words are names, as in `time, g`.
+/// More than half of the words must be units. If exactly half of the words are units, the line is a row of units only
+/// if its separator does not occur in prose, if it does not contain "unit", and if the other words are not all names of
+/// quantities, as in `time, g`.
 fn damaged_unit(text: &str, width: usize) -> Option<String> {
     splits(plain(text)).into_iter().find_map(|(separated, parts)| {
         if parts.len() != width || parts.iter().any(String::is_empty) {
