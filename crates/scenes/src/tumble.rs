@@ -4,7 +4,7 @@ use barrelstack_dynamics::{Body, Interface, NormalLaw, Planar, Twist, Vec2};
 
 use crate::scene::{coulomb, disc, finely_noded_block, floor, interface, pose};
 
-/// A small random number generator (SplitMix64). The same seed gives the same scene on every machine.
+/// A small random number generator (`SplitMix64`). The same seed gives the same scene on every machine.
 pub struct Random(pub u64);
 
 impl Random {
