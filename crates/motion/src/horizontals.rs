@@ -33,10 +33,10 @@ pub enum Horizontals {
 impl Horizontals {
     /// Returns the combined measure of two components with the same time step (SI units).
     ///
-    /// For measures over directions, the longer component is cut to the length of the shorter one; the
-    /// geometric mean uses each component in full. Peaks and spectral accelerations are computed from the
-    /// convex hull of the two responses. All other measures are computed from the motion rotated in
-    /// steps of one degree.
+    /// For `RotD50` and `RotD100`, the longer component is cut to the length of the shorter one.
+    /// Peaks and spectral accelerations are computed from the convex hull of the two responses. All
+    /// other measures are computed from the motion rotated in steps of one degree. The geometric
+    /// mean uses each component in full.
     ///
     /// # Errors
     /// If the steps differ, or a parameter of the measure is out of range.

@@ -7,14 +7,14 @@ use crate::site::Site;
 use crate::units::MotionUnit;
 use crate::utc::Utc;
 
-/// Metadata of one channel of a station; an empty code matches any code.
+/// Metadata of one channel of a station. An empty network, station or channel code matches any code.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Instrument {
     /// Network code.
     pub network: String,
     /// Station code.
     pub station: String,
-    /// Location code; `None` matches any code, an empty text only the empty code.
+    /// Location code. `None` matches any code; an empty code matches only an empty code.
     pub location: Option<String>,
     /// Channel code, such as `HNE`.
     pub channel: String,
@@ -35,7 +35,8 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    /// Returns `true` if the metadata describe a channel that begins at `start`.
+    /// Returns `true` if the metadata apply to the channel `seed` at the time `start`. If `start` is
+    /// `None`, the epoch is not checked.
     pub(crate) fn describes(&self, seed: &SeedName, start: Option<Utc>) -> bool {
         let fits = |mine: &str, theirs: &str| mine.is_empty() || mine.eq_ignore_ascii_case(theirs);
         let (from, until) = self.epoch;

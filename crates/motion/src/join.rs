@@ -29,8 +29,12 @@ impl Record {
         Self::gather_mixed(records)
     }
 
-    /// Combines files like [`Record::gather`], regardless of their origin. The channels of the
-    /// result may be rotated together.
+    /// Combines files as [`Record::gather`] does, but also files of different stations, sensors,
+    /// events, publishers or stages.
+    ///
+    /// If the files differ in one of these, the result has a warning, and two of its channels may
+    /// form a horizontal pair even if they belong to different stations or sensors
+    /// ([`Record::mixed`]).
     ///
     /// # Errors
     /// If no record is given, the time steps differ, or the files have no common time span.
@@ -141,7 +145,7 @@ impl Record {
     }
 }
 
-/// Returns `true` if two texts name different things; an empty text matches any text.
+/// Returns `true` if two names differ; an empty name matches any name.
 ///
 /// Case, blanks and punctuation are ignored, because formats replace commas, parentheses and
 /// accents. Non-ASCII characters are also ignored if a letter or digit remains.

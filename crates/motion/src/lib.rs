@@ -28,8 +28,8 @@
 //! - Acceleration is linear between samples, velocity quadratic, displacement cubic.
 //! - Before t = 0 the ground is at rest; after the end the acceleration is zero and the velocity is
 //!   constant.
-//! - Measures are computed with the trapezoidal rule and from the peaks at the samples, as is
-//!   customary for published values. The displacement that drives a model is the exact integral of
+//! - Intensity measures use trapezoidal integration and the largest sample values, as is customary
+//!   for published values. The displacement that drives a model is the exact integral of
 //!   its acceleration; its peak ([`Sampled::pgd`]) is up to 0.4 % above the published value.
 //! - Units and steps are never guessed: a file without them needs [`ReadOptions`].
 //!
@@ -46,7 +46,7 @@
 //! - Many records: [`group_files`], [`measure`], [`Flatfile`].
 //! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
 //!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
-//! - Synthesis: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], from the seeds of
+//! - Synthesis: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`]. Random numbers:
 //!   [`Random`].
 
 // Results must be bit-identical on every machine, so the system's transcendental functions are not
@@ -131,7 +131,7 @@ pub use target::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 pub use units::AccelerationUnit;
 pub use utc::Utc;
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example in the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -32,8 +32,9 @@ pub struct Matched {
     pub rounds: usize,
     /// The requested method.
     pub chosen: MatchMethod,
-    /// The method of the first rounds: the requested method, or the frequency domain if wavelets
-    /// alone stalled.
+    /// Method of the first rounds that led to the motion: the requested method, or the frequency
+    /// domain if wavelets alone missed the tolerance and a restart in the frequency domain came
+    /// closer.
     pub first: MatchMethod,
 }
 

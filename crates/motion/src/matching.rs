@@ -62,11 +62,13 @@ impl Default for Matching {
     }
 }
 
-/// Exponents of the ratio of target to spectrum in the frequency domain. Each match uses one
-/// exponent; if the match stalls, the next match uses the next exponent.
+/// Exponents for the frequency domain. A round multiplies the Fourier amplitudes by the ratio of
+/// target to response spectrum, raised to one of these powers. If the match misses the tolerance, it
+/// restarts with the next exponent.
 const AMPLITUDE_STEPS: [f64; 4] = [0.7, 0.5, 0.9, 0.3];
-/// Limit of the number of samples multiplied by the number of rounds. Above the limit, no further match
-/// is started. For a motion of 35,000 samples, the limit is 400 rounds, which take about 6 s.
+/// Upper limit of the product of the number of samples and the number of rounds. Above this limit,
+/// the match does not restart. A motion of 35,000 samples reaches the limit after 400 rounds, which
+/// take about 6 s.
 const MOST_SAMPLES: usize = 14_000_000;
 
 /// Time steps per shortest matched period. With this number, a peak between two samples is
@@ -75,16 +77,18 @@ const MOST_SAMPLES: usize = 14_000_000;
 pub(crate) const STEPS_A_PERIOD: f64 = 20.0;
 /// Number of matched periods per decade.
 const PER_DECADE: f64 = 60.0;
-/// Number of judged periods per matched period. The misfit is judged on this finer grid, so that a
-/// misfit between matched periods is noticed.
+/// Number of judged periods per matched period. Every round evaluates the misfit at the judged
+/// periods, so that a misfit between matched periods is noticed.
 const JUDGED: usize = 3;
-/// Number of checked periods per judged period. The final check uses this even finer grid.
+/// Number of checked periods per judged period. The final misfit is evaluated at the checked
+/// periods, which form an even finer grid.
 const CHECKED: usize = 6;
-/// No further method is used if the misfit is at most this fraction of the tolerance.
+/// No further method is started once the misfit is at most this fraction of the tolerance.
 const CLEAR: f64 = 0.98;
 /// Number of rounds without improvement after which a method gives up.
 pub(crate) const PATIENCE: usize = 15;
-/// The rounds end when the misfit is at most this fraction of the tolerance.
+/// The rounds of a method end when the misfit at the judged periods is at most this fraction of the
+/// tolerance.
 pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 
 impl GroundMotion {
@@ -120,9 +124,9 @@ impl GroundMotion {
         Err(not_converged(matched.misfit, &matched.missed_in_words(), matched.rounds, settings))
     }
 
-    /// Matches like [`GroundMotion::match_spectrum`], but returns the best motion even if the
-    /// tolerance is not reached. [`Matched::missed`] lists the ranges of periods that miss the
-    /// target.
+    /// Matches the horizontal component as [`GroundMotion::match_spectrum`] does, but returns the
+    /// best motion even if the tolerance is not reached. [`Matched::missed`] lists the ranges of
+    /// periods that miss the target.
     ///
     /// # Errors
     /// If a setting is out of range or the motion is zero.
@@ -234,7 +238,9 @@ fn intervals(settings: &Matching) -> usize {
     count
 }
 
-/// Returns periods from the shortest to the longest, with `finer` periods per matched period.
+/// Returns a logarithmic grid of periods (s) from the shortest to the longest matched period.
+///
+/// The grid divides every interval between matched periods into `finer` intervals.
 fn judged_periods(settings: &Matching, finer: usize) -> Vec<f64> {
     math::log_space(settings.shortest, settings.longest, finer * intervals(settings))
 }
@@ -278,8 +284,8 @@ pub(crate) struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    /// Creates the data of a match. `time_step` (s) is the time step of the motion before [`subdivided`]
-    /// divides it.
+    /// Prepares a match to `target`. `time_step` is the time step (s) of the motion before
+    /// [`subdivided`] reduces it.
     pub(crate) fn new(
         target: &'a TargetSpectrum,
         settings: &Matching,
@@ -309,8 +315,8 @@ impl<'a> Work<'a> {
         pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
     }
 
-    /// Returns the [`Layers`] of a motion, for oscillators with periods up to the longest matched
-    /// period.
+    /// Returns a motion at successively coarser time steps ([`Layers`]), for oscillators with periods
+    /// up to the longest matched period.
     pub(crate) fn layers(&self, acceleration: &[f64]) -> Layers {
         let longest = self.checked.last().copied().unwrap_or(0.0);
         Layers::new(self.time_step, acceleration, longest)
@@ -333,12 +339,14 @@ impl<'a> Work<'a> {
         misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration))
     }
 
-    /// Returns the judged periods (s) and their target values (m/s²).
+    /// Returns the judged periods (s), at which every round evaluates the misfit, and their target
+    /// values (m/s²).
     pub(crate) fn judged(&self) -> (&[f64], &[f64]) {
         (&self.judged, &self.judged_goal)
     }
 
-    /// Returns the checked periods (s) and their target values (m/s²).
+    /// Returns the checked periods (s), at which the final misfit is evaluated, and their target
+    /// values (m/s²).
     pub(crate) fn checked(&self) -> (&[f64], &[f64]) {
         (&self.checked, &self.checked_goal)
     }
@@ -408,8 +416,12 @@ impl<'a> Work<'a> {
         Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
-    /// Runs the methods in turn. Returns the best motion and the method of its first rounds: the
-    /// chosen method, or the frequency domain if wavelets alone missed the tolerance.
+    /// Runs the methods in turn. Returns the best motion and the method of the first rounds that led
+    /// to it ([`Matched::first`]).
+    ///
+    /// If the time domain is requested, wavelets are added to the start motion. If they miss the
+    /// tolerance, or the frequency domain is requested, every further attempt starts in the
+    /// frequency domain with one of [`AMPLITUDE_STEPS`], and then adds wavelets.
     fn alternate(
         &self,
         start: &[f64],
@@ -435,7 +447,8 @@ impl<'a> Work<'a> {
         Ok((best, if began { MatchMethod::Frequency } else { settings.method }))
     }
 
-    /// Adds wavelets in rounds, and polishes the result if it misses the tolerance.
+    /// Adds wavelets in rounds. If the result misses the tolerance, `wavelets::polish` improves it in
+    /// further rounds with smaller corrections.
     fn wavelets(
         &self,
         start: &[f64],
@@ -451,8 +464,8 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Changes the Fourier amplitudes in rounds and returns the best motion. `step` is the exponent
-    /// of the ratio of target to spectrum.
+    /// Changes the Fourier amplitudes in rounds and returns the best motion. Every round multiplies
+    /// them by the ratio of target to response spectrum, raised to the power `step`.
     fn in_frequency(
         &self,
         start: &[f64],
@@ -498,7 +511,7 @@ impl<'a> Work<'a> {
 pub(crate) struct Fit {
     /// Largest relative misfit.
     pub(crate) misfit: f64,
-    /// Mean of all misfits, weighted so that the largest misfits dominate.
+    /// Power mean of all misfits with exponent 12, in which the largest misfits dominate.
     pub(crate) roughness: f64,
     /// Periods (s) at which the misfit has a local maximum, each with its misfit.
     pub(crate) worst: Vec<(f64, f64)>,

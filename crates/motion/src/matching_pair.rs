@@ -1,4 +1,4 @@
-//! Spectral matching of two horizontal components together, by their response over all directions.
+//! Spectral matching of two horizontal components together, to a target for `RotD50` or `RotD100`.
 
 use crate::error::MotionError;
 use crate::fourier::{apply_gain, forward_real, inverse};
@@ -11,9 +11,11 @@ use crate::response::Step;
 use crate::rotd::{RotatedPeak, rotated_peak};
 use crate::wavelets::{FORGOTTEN, Wavelet};
 
-/// Number of rounds in the frequency domain, which approaches the target and then stalls.
+/// Maximum number of rounds in the frequency domain. These rounds approach the target and then
+/// stall.
 const FREQUENCY_ROUNDS: usize = 12;
-/// Exponent of the ratio of target to spectrum in the frequency domain.
+/// Exponent for the frequency domain. A round multiplies the Fourier amplitudes by the ratio of
+/// target to response spectrum, raised to this power.
 const AMPLITUDE_STEP: f64 = 0.7;
 /// Initial and smallest fraction of the misfit that the wavelets of one round remove. Rounds
 /// without improvement reduce the fraction.
@@ -24,11 +26,11 @@ const PATIENCE: usize = 12;
 /// Accelerations (m/s²) of two components with the same time step and length.
 pub(crate) type Pair = [Vec<f64>; 2];
 
-/// Matches the response over all directions to the target of `work`.
+/// Matches the `RotD50` or `RotD100` spectrum of two components to the target of `work`.
 ///
-/// First, the amplitudes of both components are multiplied by one gain, which keeps their
-/// polarization. Then wavelets are added along the direction of the measured response (Grant 2011,
-/// Earthquake Spectra 27:675-685, for `RotD100`).
+/// First, the Fourier amplitudes of both components are multiplied by the same gain, which keeps
+/// the polarization. Then wavelets are added along the direction of the response at its peak (Grant
+/// 2011, Earthquake Spectra 27:675-685, for `RotD100`).
 pub(crate) fn match_pair(
     work: &Work<'_>,
     start: Pair,
@@ -137,7 +139,7 @@ impl Search<'_> {
     }
 
     /// Returns the pair with its Fourier amplitudes multiplied by the ratio of the target to the
-    /// spectrum `now`.
+    /// response spectrum `now`, raised to the power [`AMPLITUDE_STEP`].
     fn amplified(&self, pair: &Pair, now: &[f64]) -> Result<Pair, MotionError> {
         let (periods, goals) = self.work.judged();
         let length = (pair[0].len() + pair[0].len() / 4).next_power_of_two();
@@ -247,7 +249,7 @@ struct Aim {
     /// Direction of the wavelet, which is the direction of the response at the time of the peak
     /// response.
     push: [f64; 2],
-    /// Required change (m/s²).
+    /// Required change of the response in [`Aim::direction`] (m/s²).
     change: f64,
     step: Step,
 }

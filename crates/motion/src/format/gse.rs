@@ -144,8 +144,9 @@ fn six(byte: u8) -> Option<u8> {
     })
 }
 
-/// Decodes numbers from six-bit characters. The highest bit marks a continuation, the next bit of
-/// the first character is the sign, and all other bits are digits.
+/// Decodes integers from six-bit characters, the most significant bits first. The highest bit of a
+/// character states that the integer continues in the next character. The next bit of the first
+/// character is the sign. All other bits form the magnitude.
 fn six_bits(encoded: impl Iterator<Item = u8>, count: usize) -> Option<Vec<i64>> {
     let mut numbers = Vec::new();
     let mut open: Option<(bool, i64)> = None;

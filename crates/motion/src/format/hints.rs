@@ -12,7 +12,7 @@ use crate::utc::Utc;
 /// rounding.
 const LARGEST_DIFFERENCE: f64 = 0.005;
 
-/// Options of the caller, with a mark for each option that a reader has used.
+/// Options of the caller, with flags for the options that a reader has used.
 ///
 /// A reader queries only information that the file does not state. Unused options are ignored and
 /// reported.
@@ -43,7 +43,7 @@ impl<'a> Hints<'a> {
         self.options
     }
 
-    /// Adds the marks of another reader to the marks of this reader.
+    /// Sets the flags of all options whose flags are set in `other`.
     pub(super) fn used_as(&self, other: &Hints<'_>) {
         for (mine, theirs) in [
             (&self.unit, &other.unit),
@@ -70,7 +70,8 @@ impl<'a> Hints<'a> {
         self.options.sensitivity
     }
 
-    /// Returns the metadata of a channel that begins at `start`.
+    /// Returns the first of the caller's metadata that apply to the channel `seed` at the time
+    /// `start`.
     pub(super) fn instrument(&self, seed: &SeedName, start: Option<Utc>) -> Option<&'a Instrument> {
         self.sensitivity.set(true);
         let mut fitting =

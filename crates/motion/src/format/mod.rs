@@ -59,7 +59,7 @@ pub struct ReadOptions {
     /// Sensitivity in counts per m/s², for files of counts; overrides a COSMOS header. The unit is
     /// counts per m/s or per m if [`ReadOptions::recorded`] is velocity or displacement.
     pub sensitivity: Option<f64>,
-    /// Metadata of single channels. The first entry that matches a channel takes precedence over
+    /// Metadata of individual channels. The first entry that matches a channel takes precedence over
     /// the sensitivity for all channels.
     pub instruments: Vec<Instrument>,
     /// Quantity recorded in SEED and SAC files; takes precedence over the channel codes. Velocity
@@ -277,7 +277,8 @@ fn check_bytes(source: &Source<'_>) -> Result<(), ReadError> {
     Err(source.damaged((), expected, found, remedy))
 }
 
-/// Parses velocities (m/s) at the first samples from a header line of this crate.
+/// Parses the velocities (m/s) at the first samples, one per channel, from a header line that this
+/// crate has written.
 fn initial_velocities(
     source: &Source<'_>,
     line: usize,
@@ -424,8 +425,8 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
 }
 
 /// Returns the index of a sample that is a placeholder for a missing value, such as -9999 in any
-/// unit of acceleration. The step to such a sample is more than three times as large as any step
-/// between other samples.
+/// unit of acceleration. The change to or from such a sample is more than three times as large as
+/// any change between other samples.
 fn missing_value(values: &[f64]) -> Option<usize> {
     let jump = |row: usize| (values[row] - values[row - 1]).abs();
     let largest = (1..values.len()).max_by(|a, b| jump(*a).total_cmp(&jump(*b)))?;
@@ -439,8 +440,8 @@ fn missing_value(values: &[f64]) -> Option<usize> {
     })
 }
 
-/// Returns `true` if a value (m/s²), converted to any unit of acceleration, consists only of nines
-/// (at least three) or is another common placeholder.
+/// Returns `true` if a value (m/s²) is a placeholder in at least one unit of acceleration. A
+/// placeholder consists of at least three nines, or is another common number such as 32767.
 fn is_mark(value: f64) -> bool {
     AccelerationUnit::ALL.iter().any(|unit| {
         let number = (value / unit.factor()).abs();
@@ -451,7 +452,7 @@ fn is_mark(value: f64) -> bool {
     })
 }
 
-/// Returns `true` if a number above 99 is written with nines only, at least three.
+/// Returns `true` if a number is above 99 and all its digits are nines, as in 999 or 99.9.
 fn is_nines(number: f64) -> bool {
     let text = format!("{number:.6}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -517,7 +518,7 @@ fn check_count(
     ))
 }
 
-/// Checks the number of values like [`check_count`], for a header that states the length of the
+/// Checks the number of values as [`check_count`] does, for a header that states the length of the
 /// record in whole seconds. A difference of up to one second is considered rounding.
 fn check_seconds(
     source: &Source<'_>,

@@ -113,7 +113,8 @@ fn in_columns(
     Ok(Some((values, blanks)))
 }
 
-/// Returns `true` for `*** Begin data ***` and similar lines, which surround the values in some copies of PEER files.
+/// Returns `true` for a blank line, and for `*** Begin data ***` and similar lines, which precede the values in some
+/// copies of PEER files.
 fn is_begin_mark(source: &Source<'_>, line: usize) -> bool {
     let text = source.text(line);
     text.is_empty() || text.starts_with("***") && source.has(line, "begin")

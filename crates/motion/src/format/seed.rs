@@ -80,7 +80,8 @@ pub(super) fn as_acceleration(
     Ok((0..order).fold(scaled, |values, _| differentiated(&values, time_step)))
 }
 
-/// Refuses a channel whose metadata state an input unit that is not a unit of motion.
+/// Returns the error for a channel whose metadata state no input unit, or one that is not a unit of
+/// motion.
 fn other_unit(source: &Source<'_>, seed: &SeedName, unit: &str) -> ReadError {
     let found = match unit {
         "" => "metadata without an input unit".to_owned(),

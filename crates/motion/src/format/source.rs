@@ -136,7 +136,8 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Checks that a block begins with a mark on a line; error messages describe the mark as `expected`.
+    /// Checks that `line`, the first line of a block, contains `mark`. The error message states that
+    /// `expected` is missing.
     pub(crate) fn require_mark(
         &self,
         line: usize,
@@ -322,8 +323,8 @@ impl<'a> Source<'a> {
             .map(|(values, next, _)| (values, next))
     }
 
-    /// Reads as many numbers as the header states, like [`Source::fixed`]. Excess numbers on the last line and on the
-    /// lines after it are ignored with a warning.
+    /// Reads the `count` numbers that the header states, as [`Source::fixed`] does. Excess numbers on
+    /// the last line and on the lines after it are ignored with a warning.
     pub(crate) fn counted(
         &self,
         record: &mut Record,
@@ -356,8 +357,8 @@ impl<'a> Source<'a> {
         Ok((values, next))
     }
 
-    /// Returns the values, the next line, and the number of excess values on the last line. If
-    /// `lenient` is `false`, excess values are an error.
+    /// Reads `count` numbers as [`Source::fixed`] does. Returns the numbers, the next line, and the
+    /// count of excess numbers on the last line. If `lenient` is `false`, excess numbers are an error.
     fn fixed_or_more(
         &self,
         line: usize,
@@ -504,7 +505,8 @@ impl<'a> Source<'a> {
         )
     }
 
-    /// Returns an error that locates the first byte that is not valid in text, if there is one.
+    /// Checks that the file contains no control characters other than white space. The error locates
+    /// the first one.
     pub(crate) fn require_text(&self) -> Result<(), ReadError> {
         for (line, raw) in self.lines.iter().enumerate() {
             if let Some(column) = raw.iter().position(|&b| b < 0x09 || (0x0E..0x20).contains(&b)) {

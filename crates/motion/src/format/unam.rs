@@ -169,7 +169,7 @@ fn site(source: &Source<'_>) -> Site {
     Site { elevation, ..Site::default() }.at(position)
 }
 
-/// Returns the line after the second ruled line below `DATOS DE ACELERACION`.
+/// Returns the line after the second line of hyphens below `DATOS DE ACELERACION`.
 fn data_line(source: &Source<'_>) -> Result<usize, ReadError> {
     let title = (0..MOST_HEADER_LINES.min(source.lines.len()))
         .rev()

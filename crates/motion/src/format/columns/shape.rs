@@ -34,8 +34,8 @@ pub(super) fn rises(column: &[f64]) -> bool {
 /// values alone.
 const EVEN_ROWS: usize = 20;
 
-/// Returns `true` if every value of a column lies within one step of a straight line, as rounded
-/// times do.
+/// Returns `true` if every value of a column deviates from a straight line by less than the mean step. This includes
+/// evenly spaced times that were rounded when they were printed. A column with fewer than [`EVEN_ROWS`] rows fails.
 pub(super) fn is_even(column: &[f64]) -> bool {
     let [from, .., to] = *column else { return false };
     let mean = (to - from) / (column.len() - 1) as f64;
@@ -71,7 +71,7 @@ pub(super) fn repeated_time(column: &[f64], resolution: f64) -> Option<usize> {
     (1..column.len()).find(|&row| column[row] == column[row - 1])
 }
 
-/// Returns the coarsest resolution of the printed times in a column: one unit of the last digit.
+/// Returns the finest resolution of the printed times in a column, which is one unit of the last digit.
 pub(super) fn time_resolution(source: &Source<'_>, first: usize, end: usize, column: usize) -> f64 {
     let resolution = |line: usize| {
         let text = latin1(source.raw(line));
