@@ -16,7 +16,7 @@ pub struct Diagram {
     pub scene: Arc<Scene>,
     /// The instant (s); the nearest frame is shown.
     pub time: f64,
-    /// Texts and their positions (m).
+    /// Labels and their positions (m).
     pub labels: Vec<(Point, String)>,
     /// Arrows over the bodies.
     pub arrows: Vec<Arrow>,
@@ -29,7 +29,7 @@ pub struct Arrow {
     pub from: Point,
     /// Head (m).
     pub to: Point,
-    /// Meaning, for the CSV of the figure.
+    /// What the arrow represents; written to the CSV of the figure.
     pub meaning: String,
 }
 

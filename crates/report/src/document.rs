@@ -22,14 +22,15 @@ pub struct Document {
     /// Warnings that the reader must know before relying on the result; shown directly after the
     /// first player.
     pub warnings: Vec<String>,
-    /// Language of the texts; see [`Document::in_language`].
+    /// Language of the strings; see [`Document::in_language`].
     pub language: Language,
 }
 
 impl Document {
-    /// Divides the blocks into those up to the first picture and all others, which follow the sentences of the verdict.
+    /// Splits the blocks after the first picture; the first part is empty if there is no picture.
     ///
-    /// The first picture is the first player or, without a player, a figure or table that opens the document.
+    /// The first picture is the first player or, without a player, a figure or table that opens the document. In the
+    /// output, the sentences of the verdict are between the two parts.
     pub(crate) fn parted(&self) -> (&[Block], &[Block]) {
         let player = |block: &Block| matches!(block, Block::Player(_) | Block::Players(_));
         let opens = |at: &usize| matches!(self.blocks[*at], Block::Figure(_) | Block::Table(_));
@@ -40,7 +41,7 @@ impl Document {
     }
 }
 
-/// Scope of a result, stated after the provenance.
+/// Note on what a report does and does not state, shown after the provenance.
 pub(crate) const SCOPE: &str = "This page states what a model computes from the inputs that it lists. It does not replace the \
                          judgment of an engineer who has inspected the stack, its racks and its floor.";
 
@@ -71,14 +72,14 @@ pub struct Verdict {
     pub sentences: Vec<String>,
     /// Sentences with the numbers that support the headline, in a collapsed section on screen.
     pub fine: Vec<String>,
-    /// Tone of the verdict, which determines the sign and the color beside the headline.
+    /// Tone of the verdict, which determines the symbol and the color beside the headline.
     pub tone: Tone,
 }
 
 /// Maximum length (bytes) of a headline that is shown as one heading.
 const ONE_HEADING: usize = 180;
 
-/// Minimum length (bytes) of the opening sentences of a headline that is divided.
+/// Minimum length (bytes) of the first part when a text is split by [`opening`].
 const OPENING: usize = 30;
 
 impl Verdict {
@@ -89,8 +90,8 @@ impl Verdict {
     }
 }
 
-/// Returns the opening sentences of a text that is longer than `whole` (bytes), and the remaining sentences. A shorter
-/// text is returned undivided, with an empty remainder.
+/// Splits a text that is longer than `whole` (bytes) into its opening sentences and the remaining sentences. The second
+/// part is empty if the text is not longer, or has no end of a sentence at which to split it.
 pub(crate) fn opening(text: &str, whole: usize) -> (&str, &str) {
     let end = text.match_indices(". ").map(|(at, _)| at + 1).find(|end| *end >= OPENING);
     match end.filter(|_| text.len() > whole) {
@@ -99,7 +100,7 @@ pub(crate) fn opening(text: &str, whole: usize) -> (&str, &str) {
     }
 }
 
-/// The kind of verdict; always shown as a sign and a word, never by color alone.
+/// The kind of verdict; always shown as a symbol and a word, never by color alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
     /// The stack stands.
@@ -114,7 +115,7 @@ pub enum Tone {
 }
 
 impl Tone {
-    /// Returns the word shown beside the sign.
+    /// Returns the word shown beside the symbol.
     pub fn word(self) -> &'static str {
         match self {
             Self::Stands => "Stands",
@@ -161,8 +162,10 @@ impl Block {
 /// Summary line of the collapsed section that contains [`Verdict::fine`].
 pub(crate) const FINE: &str = "The numbers behind the verdict";
 
-/// Returns the sentence that replaces, on paper, content that only the page on screen shows. The sentence lists the
-/// numbers of the figures and tables in this content, which follow from the counters before and after the content.
+/// Returns the sentence that is printed in place of content that is shown only on screen.
+///
+/// The sentence consists of `what`, the numbers of the figures and tables in the content, and a reference to the HTML
+/// page. `before` and `after` are the counters before and after the content.
 pub(crate) fn elsewhere(what: &str, [before, after]: [Counter; 2], language: Language) -> String {
     let numbers =
         [("figure", before.figures, after.figures), ("table", before.tables, after.tables)];

@@ -1,11 +1,12 @@
-//! Variants of a verdict, drawn as one dot each.
+//! Outcomes of variants, drawn as one dot for each variant.
 
 use crate::{
     Language,
     drawing::{Drawing, Item},
 };
 
-/// Outcomes of the variants in one plane or in three dimensions, drawn below the headline as one dot for each variant.
+/// Numbers of variants by outcome, for one direction of the shaking or for a three-dimensional model. Each
+/// variant is drawn as a dot below the headline.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dots {
     /// Direction of the shaking, such as "along the barrels"; empty for a three-dimensional model.
@@ -28,8 +29,8 @@ const PITCH: f64 = 10.0;
 const RADIUS: f64 = 3.6;
 
 impl Dots {
-    /// Returns the counts with the appearance of their dots, such as "Along the barrels: 53 fall
-    /// (filled), 11 stand (rings)".
+    /// Returns a description of the dots: the number of variants with each outcome, followed by the appearance of
+    /// their dots, such as "Along the barrels: 53 fall (filled), 11 stand (rings)".
     pub(crate) fn words(&self, language: Language) -> String {
         let counts: Vec<String> = [
             (self.fell, ["falls", "fall"], "filled"),
@@ -48,8 +49,8 @@ impl Dots {
         format!("{}: {}", crate::capital(place), counts.join(", "))
     }
 
-    /// Draws the dots in rows, first those of variants that fall; `None` if there are too many dots
-    /// or none.
+    /// Draws the dots in rows, beginning with the variants that fall. Returns `None` if there are no variants, or more
+    /// than `MOST`.
     pub(crate) fn draw(&self, language: Language) -> Option<Drawing> {
         let all = self.fell + self.open + self.stood;
         if all == 0 || all > MOST {

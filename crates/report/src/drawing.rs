@@ -84,7 +84,7 @@ pub(crate) struct Body {
     pub(crate) items: Vec<Item>,
 }
 
-/// A defined body at a pose: x and z (m), angle (rad) counterclockwise.
+/// A body of [`Item::Defined`], by its `id`, at a pose: x and z (m), and the counterclockwise angle (rad).
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Placed {
     pub(crate) id: String,
@@ -147,14 +147,14 @@ impl Drawing {
 /// The available width; font sizes do not depend on the width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Room {
-    /// A page on a desk, or on paper.
+    /// A page on a computer screen or on paper.
     Page,
     /// A page on a phone.
     Phone,
 }
 
 impl Room {
-    /// Returns the length for this available width: `page` or `phone`.
+    /// Returns `page` or `phone`, the lengths for the two available widths.
     pub(crate) fn of(self, page: f64, phone: f64) -> f64 {
         match self {
             Self::Page => page,
@@ -169,8 +169,8 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
 
-/// Breaks text of font size `size` (px) into lines that, if possible, are no wider than `width`; a
-/// line may break after a space or after a character that joins words.
+/// Breaks text of font size `size` (px) into lines that, if possible, are no wider than `width` (px). A line may break
+/// after a space or after `.`, `-`, `_` or `/`.
 pub(crate) fn broken(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for piece in text.split_inclusive([' ', '.', '-', '_', '/']) {

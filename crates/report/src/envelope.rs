@@ -50,7 +50,7 @@ pub struct BoundarySample {
 const WIDTH: [f64; 2] = [520.0, 358.0];
 const SIDE: f64 = 24.0;
 const LEGEND: f64 = 62.0;
-/// Drawn length of the largest stress, as a share of the larger side of the body.
+/// Drawn length of the largest stress, as a fraction of the larger side of the body.
 const REACH: f64 = 0.38;
 
 impl Envelope {

@@ -62,7 +62,7 @@ impl Figure {
         Self { id: id.into(), caption: caption.into(), kind: picture.into(), language }
     }
 
-    /// Returns the figure in a language: the words that the picture adds are translated, and other texts are kept.
+    /// Returns the figure with another language for the words that the picture adds; all other strings are unchanged.
     #[must_use]
     pub(crate) fn in_language(self, language: Language) -> Self {
         Self { language, ..self }
@@ -82,8 +82,8 @@ impl Figure {
         }
     }
 
-    /// Returns the picture as a PNG on white, with a resolution of `dpi` dots per inch, at which a
-    /// font size of 12 px is 9 points.
+    /// Returns the picture as a PNG with a white background and a resolution of `dpi` dots per inch. One px is 1/96
+    /// inch, so a font size of 12 px is 9 points at any resolution.
     ///
     /// Text is drawn with the bundled font, so the same figure gives the same file on every
     /// machine.
@@ -101,8 +101,8 @@ impl Figure {
     ///
     /// A plot gives one pair of `x` and `y` columns per series. Panels give the columns of each
     /// plot, one plot below the other, separated by an empty line. A strip gives one row per
-    /// instant and body, an envelope one row per sample, a diagram one row per arrow, and a floor plan one row per corner,
-    /// mark and cell.
+    /// instant and body, an envelope one row per sample, a diagram one row per arrow, and a floor plan
+    /// one row per corner, mark and cell.
     pub fn to_csv(&self) -> String {
         match &self.kind {
             FigureKind::Plot(plot) => plot.to_csv(),
@@ -146,7 +146,7 @@ pub struct Attachment {
 pub enum Format {
     /// Vector graphics, for pages and for editing.
     Svg,
-    /// Pixels.
+    /// Raster graphics.
     Png,
     /// Vector graphics, for typesetting.
     Pdf,

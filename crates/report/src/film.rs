@@ -41,7 +41,7 @@ impl Film {
         self.frames.is_empty()
     }
 
-    /// Returns the time (s) of picture `at`; `None` after the last picture.
+    /// Returns the time (s) of the picture with index `at`; `None` after the last picture.
     pub fn time(&self, at: usize) -> Option<f64> {
         self.scene.frames.times.get(*self.frames.get(at)?).copied()
     }
@@ -51,15 +51,15 @@ impl Film {
         [self.view.width, self.view.height + HEADING].map(|side| 2.0 * (0.5 * side).ceil())
     }
 
-    /// Returns picture `at` as a PNG with a resolution of `dpi` dots per inch; `None` after the
-    /// last picture.
+    /// Returns the picture with index `at` as a PNG with a resolution of `dpi` dots per inch; `None` after the last
+    /// picture.
     ///
     /// At multiples of 96 dpi both sides are even numbers of pixels, as video encoders require.
     pub fn png(&self, at: usize, dpi: f64) -> Option<Vec<u8>> {
         self.drawing(at).map(|drawing| raster::png(&drawing, dpi))
     }
 
-    /// Returns picture `at` as a standalone SVG document; `None` after the last picture.
+    /// Returns the picture with index `at` as a standalone SVG document; `None` after the last picture.
     pub fn svg(&self, at: usize) -> Option<String> {
         self.drawing(at).map(|drawing| drawing.standalone())
     }
@@ -111,12 +111,13 @@ impl Scene {
     }
 }
 
-/// Returns the indices of the frames nearest to equal time steps, each at most once.
+/// Returns the indices of the frames nearest to times that are `1/rate` (s) apart, each index at most once. If `rate`
+/// is not positive, returns the indices of all frames.
 pub(crate) fn sampled(scene: &Scene, rate: f64) -> Vec<usize> {
     sampled_times(&scene.frames.times[..scene.frames.len()], rate)
 }
 
-/// Works like [`sampled`], on a list of times (s).
+/// Returns the same as [`sampled`], for frames at `times` (s).
 pub(crate) fn sampled_times(times: &[f64], rate: f64) -> Vec<usize> {
     let mut frames = Vec::new();
     let mut due = f64::NEG_INFINITY;

@@ -1,4 +1,4 @@
-//! A floor plan: labeled regions viewed from above, over a grid of cells that are shaded by a share from 0 to 1.
+//! A floor plan: labeled regions viewed from above, over a grid of cells that are shaded by values from 0 to 1.
 
 use std::fmt::Write as _;
 
@@ -15,7 +15,7 @@ pub struct FloorPlan {
     pub size: [f64; 2],
     /// Regions, drawn in this order.
     pub regions: Vec<Region>,
-    /// A share for each cell of the floor, drawn as a shade under the regions.
+    /// Values for the cells of the floor, drawn as shading under the regions.
     pub heat: Option<Heat>,
     /// Points with their names.
     pub marks: Vec<(Point, String)>,
@@ -32,14 +32,15 @@ pub struct Region {
     pub label: String,
 }
 
-/// A share for each square cell of a floor, such as the share of runs in which an object covers the cell.
+/// A value from 0 to 1 for each square cell of a floor, such as the fraction of runs in which an object covers the
+/// cell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heat {
     /// Side (m) of a cell; the first cell is at the origin.
     pub cell: f64,
     /// Number of cells in a row, along x.
     pub columns: usize,
-    /// Shares from 0 to 1, row by row.
+    /// Values from 0 to 1, row by row.
     pub shares: Vec<f64>,
     /// Name of the shaded quantity in the legend.
     pub label: String,
@@ -159,7 +160,7 @@ impl FloorPlan {
         drawing
     }
 
-    /// Draws each cell that has a nonzero share, in the shade of this share.
+    /// Draws the cells whose values are not zero, each in the shade of its value.
     fn shades(&self, drawing: &mut Drawing, at: &dyn Fn(Point) -> [f64; 2], scale: f64) {
         let Some(heat) = self.heat.as_ref().filter(|heat| heat.columns > 0) else { return };
         let side = heat.cell * scale;
@@ -271,7 +272,7 @@ impl FloorPlan {
         }
         legend.push(format!("one character is {} m wide", number::significant(cell, 2)));
         let wide = |entry: &String| entry.chars().count() as f64 + 2.0;
-        // A line of the legend may be as wide as the plan with its two edges. `wide` counts a blank after the last
+        // A line of the legend may be as wide as the plan with its two edges. `wide` counts a space after the last
         // entry, which is not written.
         let mut legend = wrapped(legend, COLUMNS + 2.0 + 1.0, wide).into_iter().peekable();
         while let Some(line) = legend.next() {
@@ -283,7 +284,7 @@ impl FloorPlan {
 }
 
 impl RegionKind {
-    /// Returns the character of the region in a terminal.
+    /// Returns the character that fills the region in a terminal.
     fn character(self, characters: Characters) -> char {
         match (characters, self) {
             (Characters::Unicode, Self::Stands) => '▒',
@@ -314,7 +315,7 @@ impl Region {
     }
 }
 
-/// Returns the index of the shade of a share; `None` for a share of zero.
+/// Returns the index of the shade for a value from 0 to 1; `None` for 0.
 fn shade(share: f64) -> Option<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded")]
     let step = (share * SHADES as f64).ceil().clamp(0.0, SHADES as f64) as usize;

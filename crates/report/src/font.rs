@@ -1,6 +1,6 @@
 //! The bundled font: glyphs, their widths and their outlines.
 //!
-//! Pixel pictures and PDF files look the same on every machine, because their text is drawn with
+//! Raster images and PDF files look the same on every machine, because their text is drawn with
 //! this font only. SVG refers to the fonts of the reader's system.
 
 use std::sync::LazyLock;
@@ -29,8 +29,8 @@ impl Font {
         if strong { &STRONG } else { &REGULAR }
     }
 
-    /// Returns the glyphs of `text` in order, each with its character and its width as a share of
-    /// the font size.
+    /// Returns the glyphs of `text` in order, each with its character and its width as a fraction
+    /// of the font size.
     ///
     /// Control characters have no glyph; a character that the font lacks is shown as a box.
     pub(crate) fn glyphs(&self, text: &str) -> impl Iterator<Item = (u16, char, f64)> {
@@ -40,7 +40,7 @@ impl Font {
         })
     }
 
-    /// Returns the width of a glyph as a share of the font size.
+    /// Returns the width of a glyph as a fraction of the font size.
     pub(crate) fn advance(&self, glyph: u16) -> f64 {
         let advance = self.face.glyph_hor_advance(GlyphId(glyph)).unwrap_or(0);
         f64::from(advance) / self.units()
@@ -61,7 +61,7 @@ impl Font {
         self.face.outline_glyph(GlyphId(glyph), pen);
     }
 
-    /// Converts a length in font units to a share of the font size.
+    /// Converts a length from font units to a fraction of the font size.
     pub(crate) fn share(&self, length: i16) -> f64 {
         f64::from(length) / self.units()
     }

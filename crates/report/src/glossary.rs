@@ -2,7 +2,7 @@
 
 use crate::{Word, escape};
 
-/// Heading of the list.
+/// Heading of the list of terms.
 pub(crate) const TITLE: &str = "Words";
 
 /// The terms of a page, with a record of the terms that occur on the page.
@@ -24,10 +24,9 @@ impl Glossary {
         }
     }
 
-    /// Returns text as markup, in which the first occurrence of each term in this section is
-    /// marked.
+    /// Returns `text` as markup, in which the first occurrence of each term in this section is marked.
     ///
-    /// A marked term shows its meaning on pointer, touch and keyboard input, also without scripts.
+    /// A marked term shows its meaning while the pointer is over it or while it has the focus, also without scripts.
     pub(crate) fn marked(&mut self, text: &str) -> String {
         let mut out = String::new();
         let mut rest = text;
@@ -89,8 +88,8 @@ pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
     words.iter().filter(|one| find(text, one.word).is_some()).collect()
 }
 
-/// The characters between a marked term and the next blank, such as an ending with punctuation, are kept on the same
-/// line as the term if they have at most this many bytes.
+/// Maximum length (bytes) of the text between a marked term and the next whitespace, such as a plural ending or a
+/// comma, that is kept on the same line as the term.
 const MOST_JOINED: usize = 4;
 
 /// Finds the first occurrence of `word` or its plural, as a whole word, in `text`; the parts of a key such as

@@ -27,8 +27,7 @@ pub fn html(document: &Document) -> String {
     written(document, None)
 }
 
-/// Writes the document like [`html`], with an embedded program that starts from the content of the
-/// page.
+/// Writes the document like [`html`], with a button that opens the embedded page of `trial` with its start data.
 pub fn html_with(document: &Document, trial: &Trial<'_>) -> String {
     written(document, Some(trial))
 }
@@ -137,7 +136,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Returns a fixed text in the language of the document.
+    /// Translates a fixed English string to the language of the document.
     pub(crate) fn t(&self, english: &'static str) -> &'static str {
         self.document.language.fixed(english)
     }
@@ -444,14 +443,14 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Returns the markup of a tone: its sign and its word in a language.
+/// Returns the markup of a tone: its symbol and its word in a language.
 pub fn badge(tone: Tone, language: Language) -> String {
     let word = escape::html(language.fixed(tone.word()));
     format!("<p class=\"tone\">{}<span>{word}</span></p>\n", sign(tone))
 }
 
-/// Returns the sign of a tone; each tone has its own shape, so that no meaning depends on color
-/// alone.
+/// Returns the symbol of a tone as inline SVG. Each tone has its own shape, so that no meaning depends on
+/// color alone.
 pub(crate) fn sign(tone: Tone) -> &'static str {
     match tone {
         Tone::Stands => {

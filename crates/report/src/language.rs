@@ -1,4 +1,4 @@
-//! Languages of pages: English is the language of the sources, and a catalog translates texts from it.
+//! Languages of pages. The strings in the sources are English, and a catalog translates them to another language.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -67,12 +67,14 @@ impl Language {
         missing
     }
 
-    /// Translates a fixed text from English.
+    /// Translates an English string that is an entry of the catalog as a whole; a string without an entry stays in
+    /// English.
     pub(crate) fn fixed(self, english: &'static str) -> &'static str {
         self.catalog().and_then(|catalog| catalog.entry(english)).unwrap_or(english)
     }
 
-    /// Returns the entries for the texts that scripts pass to their function `t`.
+    /// Returns the translations of the strings that scripts pass to their function `t`, with the English strings as
+    /// keys.
     pub(crate) fn entries(self, scripts: &[&str]) -> HashMap<String, String> {
         let Some(catalog) = self.catalog() else { return HashMap::new() };
         let translator = Translator::new(catalog);
@@ -115,13 +117,13 @@ impl Translated {
         Self { text: text.to_owned(), missing }
     }
 
-    /// Returns the number of letters without a translation.
+    /// Returns the number of letters in the parts that have no entry.
     fn untranslated(&self) -> usize {
         self.missing.iter().map(|text| letters(text)).sum()
     }
 }
 
-/// Translates the texts of a document; equal texts are translated once.
+/// Translates the strings of a document; equal strings are translated once.
 struct Translator {
     catalog: &'static Catalog,
     known: RefCell<HashMap<String, Translated>>,
@@ -130,7 +132,7 @@ struct Translator {
 /// Maximum depth of nested phrases.
 const DEEPEST: usize = 8;
 
-/// Maximum number of matches of a text with one template among which the best is searched for.
+/// Maximum number of matches of a text with one template that are compared to find the best translation.
 const READINGS: usize = 24;
 
 impl Translator {
@@ -248,8 +250,11 @@ impl Translator {
         best
     }
 
-    /// Returns translations of a text that has no entry as a whole: the text with its first letter in the other case,
-    /// the text without the punctuation around it, or the parts of a list.
+    /// Returns candidate translations of a text for which no single entry gives a complete translation.
+    ///
+    /// A text with whitespace around it is translated without the whitespace, as the only candidate. Otherwise, the
+    /// candidates are the translation with the case of the first letter inverted, the translation without the
+    /// punctuation around the text, and the translations of the parts of a list, joined again.
     fn derived(&self, text: &str, depth: usize) -> Vec<Translated> {
         let mut found = Vec::new();
         let inner = text.trim();
@@ -284,7 +289,8 @@ impl Translator {
         found
     }
 
-    /// Translates a text whose first letter has been changed to the other case; does not change the case again.
+    /// Translates `flipped`, a text with the case of its first letter inverted, and does not invert the case again;
+    /// `None` if no entry gives a sufficient translation.
     fn other_case(&self, flipped: &str, depth: usize) -> Option<Translated> {
         if let Some(fixed) = self.catalog.entry(flipped) {
             return Some(Translated { text: fixed.to_owned(), missing: Vec::new() });
@@ -319,7 +325,7 @@ fn joined(parts: Vec<Translated>, word: &str) -> Translated {
     whole
 }
 
-/// Returns a text with its first letter in the other case; `None` if it does not begin with a word.
+/// Returns a text with the case of its first letter inverted; `None` if the text does not begin with a word.
 fn flipped(text: &str) -> Option<String> {
     let mut rest = text.chars();
     let first = rest.next().filter(|c| c.is_alphabetic())?;
@@ -336,7 +342,7 @@ fn flipped(text: &str) -> Option<String> {
     Some(other + rest.as_str())
 }
 
-/// Gives a translation the letter case of the original.
+/// Changes the case of the first letter of a translation to that of the original.
 fn flipped_back(translation: &str, original: &str) -> String {
     let upper = original.starts_with(char::is_uppercase);
     let mut rest = translation.chars();
@@ -347,7 +353,7 @@ fn flipped_back(translation: &str, original: &str) -> String {
     }
 }
 
-/// Splits a text into sentences, without the blanks between them.
+/// Splits a text into sentences, without the spaces between them.
 fn sentences(text: &str) -> Vec<&str> {
     let (mut parts, mut start) = (Vec::new(), 0);
     for (at, _) in text.match_indices(' ') {
@@ -396,7 +402,7 @@ fn is_prose(text: &str) -> bool {
     })
 }
 
-/// `true` if the whole text is a quotation from a file of the user.
+/// `true` if the whole text is in double quotes or backticks, as a quotation from a user's file.
 fn is_quotation(text: &str) -> bool {
     let inner = |mark| text.strip_prefix(mark).and_then(|rest| rest.strip_suffix(mark));
     inner('"').or_else(|| inner('`')).is_some_and(|inner| !inner.contains("\" "))

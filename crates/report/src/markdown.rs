@@ -14,7 +14,8 @@ use crate::{
 pub struct MarkdownBundle {
     /// The text.
     pub text: String,
-    /// Figures as SVG and CSV, and tables as CSV; the text refers to them in the figure folder.
+    /// Figures as SVG and CSV, and tables as CSV. The text refers to them by paths in the folder `figure_dir` of
+    /// [`markdown`].
     pub files: Vec<Attachment>,
 }
 

@@ -126,8 +126,8 @@ pub(crate) fn gzip_letters(bytes: &[u8]) -> String {
     letters(&packer.write_all(bytes).and_then(|()| packer.finish()).unwrap_or_default())
 }
 
-/// Encodes bytes in base 85: the number of bytes, a space, and five letters for every four bytes,
-/// most significant first.
+/// Encodes bytes in base 85: the number of bytes, a space, and five characters for every four
+/// bytes, most significant first.
 ///
 /// The text is a sixteenth shorter than in base64. The alphabet starts at `!` and omits `<`, so the
 /// text cannot end a script element.

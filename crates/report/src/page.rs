@@ -51,18 +51,18 @@ const DEPTH: [&str; 3] = [
 /// Further scripts of a report, which are not part of the player.
 const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../assets/page.js")];
 
-/// Returns all scripts that may pass texts to the function `t`, which translates them.
+/// Returns all scripts that may pass strings to the function `t`, which translates them.
 #[cfg(test)]
 pub(crate) fn all_scripts() -> impl Iterator<Item = &'static str> {
     PLAYER.into_iter().chain(DEPTH).chain(REPORT).chain([trial::SCRIPT])
 }
 
-/// Content security policy of a page. It forbids every address except embedded data; the icon is an
-/// empty data address, so a browser makes no further request.
+/// Content security policy of a page. It forbids all URLs except `data:` and `blob:` URLs of images. The icon of the
+/// page is an empty `data:` URL, so that a browser does not request an icon.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
                       img-src data: blob:";
 
-/// The policy of a page with an embedded program, which allows the program to run, also in workers.
+/// Content security policy of a page with an embedded program. It allows the program to run, also in workers.
 const PROGRAM_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                               script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
                               img-src data: blob:; base-uri 'none'; form-action 'none'";
@@ -239,22 +239,22 @@ fn head((title, language): (&str, Language), policy: &str, before: &str, after: 
 /// fully loaded.
 #[derive(Clone, Copy, Debug)]
 pub struct Shell<'a> {
-    /// Language of the page, to which its title, its body and the texts of its scripts are translated
+    /// Language of the page, to which its title, its body and the strings of its scripts are translated
     /// from English.
     pub language: Language,
-    /// Title of the file.
+    /// Title of the page.
     pub title: &'a str,
     /// Style sheet of the page.
     pub style: &'a str,
     /// Body of the page, as markup.
     pub body: &'a str,
-    /// Data that are available to the scripts at the start, each under the id of an element.
+    /// Data that are available when the scripts start: pairs of the id of an element and its content.
     pub at_hand: &'a [(&'a str, &'a [u8])],
-    /// Script of the workers, in the element `worker`.
+    /// Script of the web workers, stored as text in the element with the id `worker`.
     pub worker: &'a str,
     /// Scripts of the page, which can access the scripts of the player.
     pub scripts: &'a [&'a str],
-    /// Data that are compressed with gzip and loaded last, each under the id of an element.
+    /// Data that are loaded last: pairs of the id of an element and its content, compressed with gzip.
     pub held: &'a [(&'a str, &'a [u8])],
 }
 
@@ -281,8 +281,8 @@ impl Shell<'_> {
         out
     }
 
-    /// Returns the texts of the title, the body and the scripts that have no entry in the catalog of
-    /// a language.
+    /// Returns the strings and parts of strings in the title, the body and the scripts that have no entry in the
+    /// catalog of a language.
     pub fn untranslated(&self, language: Language) -> Vec<String> {
         let scripts = self.all_scripts();
         let texts = texts_of_markup(self.body).into_iter().chain([self.title.to_owned()]);
@@ -297,7 +297,8 @@ impl Shell<'_> {
     }
 }
 
-/// Writes into the page the translations of the texts that its scripts use; writes nothing for English.
+/// Writes the translations of the strings that `scripts` pass to their function `t`, as JSON in the element with the id
+/// `language`; writes nothing for English.
 fn hold_entries(out: &mut String, language: Language, scripts: &[&str]) {
     let entries = language.entries(scripts);
     if !entries.is_empty() {

@@ -137,7 +137,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Returns a fixed text in the language of the document.
+    /// Translates a fixed English string to the language of the document.
     fn t(&self, english: &'static str) -> &'static str {
         self.document.language.fixed(english)
     }

@@ -9,7 +9,7 @@ use crate::{
     style::{Ink, Style, Tag, dashes},
 };
 
-/// A drawing target, such as pixels or the content of a page. Coordinates are in px from the upper
+/// A drawing target, such as a raster image or a page of a PDF. Coordinates are in px from the upper
 /// left corner, with y downward.
 pub(crate) trait Painter {
     /// Draws polylines; the lengths in `style`, such as the line width, are already scaled.

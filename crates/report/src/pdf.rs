@@ -348,7 +348,7 @@ impl Painter for Writer<'_> {
 
     fn circle(&mut self, [x, y]: [f64; 2], radius: f64, style: &Style) {
         /// Distance of each control point from the nearer end of the cubic that approximates a quarter circle, as a
-        /// share of the radius.
+        /// fraction of the radius.
         const HANDLE: f64 = 0.552_284_75;
         self.draw(style, &|writer| {
             let spot = |u: f64, v: f64| writer.at([x + radius * u, y + radius * v]);

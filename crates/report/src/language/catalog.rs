@@ -2,9 +2,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-/// Entries of a language.
+/// The translations to one language.
 pub(super) struct Catalog {
-    /// All entries as written, for texts without a placeholder and for scripts.
+    /// All entries as written, for strings without a placeholder and for scripts.
     entries: HashMap<&'static str, &'static str>,
     templates: Vec<Template>,
     /// For a word, the indices of templates that match only texts with this word.
@@ -31,8 +31,8 @@ pub(super) struct Template {
 }
 
 impl Catalog {
-    /// Reads a catalog: lines `"English" = "translation"`, comments that start with `#`, section
-    /// heads, and empty lines. A line that is none of these is passed over; a test reports it.
+    /// Reads a catalog, whose entries are lines of the form `"English" = "translation"`. Empty lines and comments that
+    /// start with `#` are skipped. Any other line is skipped, too, but a test reports it.
     pub(super) fn of(text: &'static str) -> Self {
         let templates: Vec<Template> = text
             .lines()
@@ -82,7 +82,8 @@ pub(super) fn entry(line: &'static str) -> Option<(&'static str, &'static str)> 
     (rest.is_empty() || rest.starts_with('#')).then_some((source, target))
 }
 
-/// Reads the TOML string with which a text starts, and returns it with the text that follows the string.
+/// Reads the TOML string at the start of `text`. Returns the content of the string and the text after it; `None` if
+/// `text` does not start with a string.
 fn quoted(text: &'static str) -> Option<(&'static str, &'static str)> {
     let inner = text.strip_prefix('"')?;
     let mut escaped = false;
@@ -106,7 +107,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty())
 }
 
-/// Divides a template at its placeholders.
+/// Splits a template at its placeholders.
 fn parts(text: &'static str) -> Vec<Part> {
     let (mut found, mut rest) = (Vec::new(), text);
     let mut from = 0;
@@ -141,7 +142,7 @@ impl Template {
         Self { source, target, letters }
     }
 
-    /// `true` if the template begins with a text and not with a placeholder.
+    /// `true` if the template begins with literal text, not with a placeholder.
     pub(super) fn begins_with_text(&self) -> bool {
         matches!(self.source.first(), Some(Part::Text(_)))
     }
@@ -165,8 +166,8 @@ impl Template {
         found
     }
 
-    /// Calls `use_it` for each match of a text with this template, with the texts in the places of the placeholders,
-    /// until `use_it` returns `false`.
+    /// Finds every match of `text` with this template, and calls `use_it` for each match until `use_it` returns
+    /// `false`. The argument of `use_it` is the part of `text` that each placeholder matches, by placeholder index.
     pub(super) fn readings<'a>(&self, text: &'a str, use_it: &mut dyn FnMut(&[&'a str]) -> bool) {
         let slots = self.source.iter().filter_map(|part| match part {
             Part::Slot(slot) => Some(*slot + 1),
@@ -179,7 +180,7 @@ impl Template {
         read(&self.source, text, &mut values, use_it);
     }
 
-    /// Writes the translation with the given texts in the places of the placeholders.
+    /// Returns the translation, in which `value(i)` replaces the placeholder with index `i`.
     pub(super) fn write<'a>(&self, value: &dyn Fn(usize) -> &'a str) -> String {
         let part = |part: &Part| match part {
             Part::Text(text) => *text,
@@ -189,8 +190,10 @@ impl Template {
     }
 }
 
-/// Matches a text with parts of a template, and calls `use_it` for each match; returns `false` once `use_it` has
-/// returned `false`.
+/// Finds every match of `text` with the parts of a template. For each match, stores the part of `text` that each
+/// placeholder matches in `values`, and calls `use_it` with them.
+///
+/// Stops and returns `false` when `use_it` returns `false`; otherwise returns `true`.
 fn read<'a>(
     parts: &[Part],
     text: &'a str,

@@ -1,4 +1,4 @@
-//! Translation of all texts of a document.
+//! Translation of all strings of a document.
 
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use crate::{
 impl Document {
     /// Returns the document in a language, translated from English.
     ///
-    /// Numbers, units and commands stay as they are, and so does a text without an entry in the
+    /// Numbers, units and commands stay as they are, and so does a string without an entry in the
     /// catalog of the language. Everything that is written from the document (pages, Markdown, PDF,
     /// figures and tables) is in this language.
     #[must_use]
@@ -31,8 +31,8 @@ impl Document {
         document
     }
 
-    /// Returns, in alphabetical order, the texts and parts of texts of an English document that have no entry in the
-    /// catalog of a language.
+    /// Returns, in alphabetical order, the strings and parts of strings in an English document that have no entry in
+    /// the catalog of a language.
     pub fn untranslated(&self, language: Language) -> Vec<String> {
         let Some(catalog) = language.catalog() else { return Vec::new() };
         let translator = Translator::new(catalog);
@@ -68,7 +68,7 @@ impl Document {
         missing.into_iter().collect()
     }
 
-    /// Returns all texts of the document except commands and the meanings of words.
+    /// Returns all strings that [`Document::in_language`] translates, except technical terms and their meanings.
     pub fn texts(&self) -> Vec<String> {
         let mut texts = Vec::new();
         let keep = |text: &mut String| texts.push(text.clone());
@@ -78,7 +78,7 @@ impl Document {
     }
 }
 
-/// Visits the texts of a document.
+/// Visits the strings of a document.
 struct Visit<F> {
     text: F,
     language: Language,

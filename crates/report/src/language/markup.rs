@@ -1,13 +1,15 @@
-//! Texts in markup and in scripts.
+//! Finds the text in markup and in scripts that is to be translated.
 
 use super::Language;
 
-/// Attributes whose values are texts, shown on screen or read by a screen reader.
+/// Attributes whose values are shown on screen or read by a screen reader.
 const ATTRIBUTES: [&str; 4] = ["aria-label=\"", "title=\"", "placeholder=\"", "alt=\""];
 
 impl Language {
-    /// Translates the texts of markup: those between tags, and labels in attributes. The texts of an element with
-    /// `translate="no"` stay in English.
+    /// Translates the text in markup: the text between tags, and the values of attributes that contain labels.
+    ///
+    /// After a tag with `translate="no"`, the text up to the next tag stays in English, and so do the attributes of
+    /// the tag itself.
     ///
     /// The markup must be well formed, without scripts and style sheets.
     pub fn markup(self, markup: &str) -> String {
@@ -18,7 +20,7 @@ impl Language {
     }
 }
 
-/// Returns the texts of markup that [`Language::markup`] translates.
+/// Returns each piece of text in markup that [`Language::markup`] translates.
 pub(crate) fn texts_of_markup(markup: &str) -> Vec<String> {
     let mut texts = Vec::new();
     replaced(markup, &mut |text| {
@@ -63,7 +65,8 @@ fn tag(tag: &str, new: &mut dyn FnMut(&str) -> String) -> String {
     out
 }
 
-/// Returns the texts that a script passes to its function `t`, as first argument in double quotes.
+/// Returns the contents of the double-quoted string literals that a script passes to its function `t` as first
+/// argument.
 pub(crate) fn texts_of_script(script: &str) -> impl Iterator<Item = &str> {
     script.match_indices("t(\"").filter_map(|(at, opening)| {
         let before = script[..at].chars().next_back();

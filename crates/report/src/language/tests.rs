@@ -117,7 +117,7 @@ fn every_line_of_the_catalog_is_an_entry_with_equal_placeholders_and_numbers() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Texts that pages add to those of a document.
+/// Returns strings that pages contain in addition to those of a document.
 fn frame() -> Vec<String> {
     let fixed = [
         "Skip to the content",
