@@ -113,7 +113,7 @@ pub use ticks::{Ticks, linear_ticks, log_ticks};
 pub use trial::Trial;
 pub use vtk::{SolidBody, SolidTie, Solids, paraview, paraview_of_solids};
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
