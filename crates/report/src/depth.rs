@@ -8,7 +8,7 @@ use crate::{
     player_data::events,
 };
 
-/// Quantum (m) to which the points of action of forces are rounded: two millimeters, which is too little to be visible.
+/// Quantum (m) to which the points of application of forces are rounded: about 2 mm, which is too little to be visible.
 const POINT_QUANTUM: f64 = 1.0 / 512.0;
 
 /// Forces are rounded to multiples of a quantum, which is this number times the power of two that [`pack::quantum_for`]
@@ -121,7 +121,7 @@ pub struct DepthTie {
     pub bodies: [usize; 2],
     /// End points of the band, each in the frame of its body (m).
     pub points: [Point3; 2],
-    /// Time (s) at which the band tears; a torn band is not drawn.
+    /// Time (s) at which the band breaks; a broken band is not drawn.
     pub torn_at: Option<f64>,
 }
 

@@ -16,7 +16,7 @@ use crate::{
 /// Returns the data of a single player.
 ///
 /// Poses are rounded to multiples of 2⁻¹⁴ (m and rad), times to multiples of 2⁻²⁰ s, and points of
-/// action to multiples of 2⁻¹⁰ m. Forces are rounded to multiples of a power of two that is at most
+/// application to multiples of 2⁻¹⁰ m. Forces are rounded to multiples of a power of two that is at most
 /// 2⁻¹² of the largest component.
 pub(crate) fn of_player(player: &Player, id: &str) -> Value {
     let scene = &player.scene;
@@ -40,8 +40,8 @@ fn together<'a>(
     })
 }
 
-/// Returns the index of the pane that a player shows first: the pane with the earliest [`Moment`] at which something
-/// falls or, if nothing falls, the pane with the earliest [`Moment`].
+/// Returns the index of the pane that a player shows first: the pane with the earliest [`Moment`] at which a body
+/// falls or, if no body falls, the pane with the earliest [`Moment`].
 fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
     let moments = scenes.into_iter().map(|scene| scene.moment.as_ref()).enumerate();
     let known = moments
@@ -244,8 +244,10 @@ fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
     json!({ "label": tint.label, "unit": tint.unit, "v": pack::channels(&channels, count, quantum) })
 }
 
-/// Packs forces as four lists of channels: for x and z of the point and of the force. Each list has one channel for
-/// every position in the longest list of forces; missing forces are gaps.
+/// Packs forces as four lists of channels: x and z of the point of application, and x and z of the force.
+///
+/// A channel holds the values of the forces at the same position in the lists of all frames, so each list has as many
+/// channels as the longest list of forces has elements. Missing and zero forces are gaps.
 fn forces(frames: &[Vec<ContactForce>], count: usize) -> Value {
     let frames = &frames[..frames.len().min(count)];
     let slots = frames.iter().map(Vec::len).max().unwrap_or(0);

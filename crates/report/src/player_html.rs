@@ -91,7 +91,7 @@ impl Writer<'_> {
         self.document.language.markup(english)
     }
 
-    /// Writes events, each with the mark of its pane, which is empty if there is only one pane.
+    /// Writes the list of events. Each event comes with the mark of its pane; the mark of a single pane is empty.
     fn events(&mut self, mut events: Vec<(&str, &Event)>) {
         events.retain(|(_, event)| event.time.is_finite());
         if events.is_empty() {
@@ -130,7 +130,7 @@ impl Writer<'_> {
     }
 }
 
-/// Returns the name and the verdict above a pane.
+/// Returns the markup of the line above a pane, which states the name and the verdict of the pane.
 fn pane_head(pane: &Pane) -> String {
     format!(
         "<div class=\"pane-head {}\">{}<p><b><span class=\"mark\">{}</span> {}</b> <span>{}</span></p></div>\n",

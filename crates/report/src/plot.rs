@@ -39,8 +39,8 @@ pub struct Axis {
     /// Range to show. If it is `None`, empty, reversed or not finite, the range of the data is
     /// shown.
     pub range: Option<[f64; 2]>,
-    /// Names of categories on a vertical axis, from top to bottom, which replace the ticks; empty
-    /// for an axis of numbers. Category names are numbered from 1.
+    /// Names of the categories on a vertical axis, from top to bottom, which replace the ticks; empty
+    /// for a numeric axis. [`Axis::row`] gives the ordinate of each name.
     pub names: Vec<String>,
 }
 
@@ -57,18 +57,18 @@ impl Axis {
         self
     }
 
-    /// Creates an axis of category names, from top to bottom; [`Axis::row`] gives the ordinate of a
+    /// Creates a category axis with these names, from top to bottom; [`Axis::row`] gives the ordinate of a
     /// name.
     pub fn named(names: Vec<String>) -> Self {
         Self { range: Some([-(names.len() as f64) - 0.5, -0.5]), names, ..Self::default() }
     }
 
-    /// Returns the ordinate of the name at an index, counted from 0.
+    /// Returns the ordinate of the category name at an index, counted from 0.
     pub fn row(place: usize) -> f64 {
         -(place as f64) - 1.0
     }
 
-    /// Formats an ordinate for CSV; on an axis with names, returns the nearest name.
+    /// Formats an ordinate for CSV; on a category axis, returns the nearest name.
     fn csv_ordinate(&self, value: f64) -> String {
         let rows = (0..self.names.len()).filter(|place| (value - Self::row(*place)).abs() <= 0.5);
         match rows.map(|place| csv_field(&self.names[place])).next() {
@@ -91,13 +91,13 @@ impl Axis {
     }
 }
 
-/// Mapping of values to lengths.
+/// Mapping from data values to positions along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Scale {
-    /// Linear: equal differences have equal lengths.
+    /// Linear: equal differences have equal lengths on the axis.
     #[default]
     Linear,
-    /// Logarithmic: equal ratios have equal lengths.
+    /// Logarithmic: equal ratios have equal lengths on the axis.
     Log,
 }
 
@@ -123,7 +123,7 @@ impl Series {
         Self { label: label.into(), x, y, ..Self::default() }
     }
 
-    /// Creates thick bars for an axis with names; each bar is given as its row and the values of x at its two ends.
+    /// Creates thick bars for a category axis; each bar is given as the index of its name and its two ends in x.
     pub fn bars(
         label: impl Into<String>,
         bars: impl IntoIterator<Item = (usize, [f64; 2])>,
@@ -154,9 +154,9 @@ pub struct SeriesStyle {
     pub area: bool,
     /// `true` to draw a dot at every point, for measured or sparse data.
     pub dots: bool,
-    /// `true` to draw dots but no line, for single measurements or raw fractions.
+    /// `true` to draw dots but no line, for single values such as measurements or observed fractions.
     pub points: bool,
-    /// `true` to draw the line as a thick bar, for intervals on an axis with names.
+    /// `true` to draw the line as a thick bar, for intervals on a category axis.
     pub bar: bool,
     /// `true` to draw a thin gray line, for context such as single motions beside their mean.
     pub muted: bool,

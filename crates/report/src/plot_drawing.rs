@@ -10,9 +10,9 @@ use crate::{
 /// Width (px) on a page and on a phone.
 const WIDTH: [f64; 2] = [680.0, 358.0];
 const PLOT_HEIGHT: f64 = 230.0;
-/// Height (px) of a row of an axis with names.
+/// Minimum height (px) per category on a category axis.
 const ROW: f64 = 36.0;
-/// Maximum share of the width that the names take.
+/// Maximum width of the names on a category axis, as a fraction of the width of the figure.
 const NAMES: f64 = 0.4;
 /// Height (px) of a line of text.
 const LINE: f64 = 15.0;

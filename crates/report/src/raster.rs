@@ -46,7 +46,7 @@ pub(crate) fn rgb(pixels: &Pixmap) -> Vec<u8> {
     pixels.pixels().iter().flat_map(|p| [p.red(), p.green(), p.blue()]).collect()
 }
 
-/// Paints a drawing on white, with `scale` pixels per px.
+/// Paints a drawing on white, with `scale` image pixels per CSS pixel.
 pub(crate) fn rasterize(drawing: &Drawing, scale: f64) -> Pixmap {
     let scale = scale.min(LARGEST / drawing.width.max(drawing.height).max(1.0));
     let side = |length: f64| whole((length * scale).ceil().max(1.0));
@@ -79,8 +79,8 @@ struct Pixels {
     canvas: Pixmap,
     /// Area that may be painted; `None` for the whole picture.
     mask: Option<Mask>,
-    /// Lower and upper corners of the current clip rectangles, each of which lies within the
-    /// previous one.
+    /// Stack of the nested clip rectangles, outermost first: left, top, right and bottom of each. Every rectangle lies
+    /// within the one before it.
     clips: Vec<[f64; 4]>,
     glyphs: HashMap<(bool, u16), Option<Path>>,
 }
@@ -105,7 +105,7 @@ impl Pixels {
         }
     }
 
-    /// Computes the mask from the current clip rectangles.
+    /// Computes the mask from the innermost clip rectangle.
     fn remask(&mut self) {
         let (width, height) = (self.canvas.width(), self.canvas.height());
         self.mask = self.clips.last().and_then(|&[left, top, right, bottom]| {

@@ -117,9 +117,9 @@ impl SceneBody {
 /// A force on a body at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForce {
-    /// Point of action (m).
+    /// Coordinate x of the point of application (m).
     pub x: f64,
-    /// Point of action (m).
+    /// Coordinate z of the point of application (m).
     pub z: f64,
     /// Component along x (N).
     pub fx: f64,
@@ -129,8 +129,8 @@ pub struct ContactForce {
 
 /// Poses over time.
 ///
-/// The lists may differ in length: frames without a time are not shown, and a body without a finite
-/// pose in a frame is not drawn in this frame.
+/// If [`times`](Self::times) and [`poses`](Self::poses) differ in length, the surplus entries of the longer list are
+/// ignored. A body is not drawn in frames in which it has no finite pose.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Frames {
     /// Times of the frames (s), not decreasing.
@@ -244,7 +244,7 @@ pub struct Tie {
     pub bodies: [usize; 2],
     /// End points of the line, each in the frame of its body (m).
     pub points: [Point; 2],
-    /// Time (s) at which the line tears; a torn line is not drawn.
+    /// Time (s) at which the tie breaks; a broken tie is not drawn.
     pub torn_at: Option<f64>,
 }
 
@@ -257,12 +257,12 @@ pub struct Moment {
     pub body: usize,
     /// Description, such as "here rack R3 leaves its seat".
     pub text: String,
-    /// `true` if something falls at that instant; of several scenes, the player first shows one in
-    /// which something falls.
+    /// `true` if a body falls at this instant. A player of several scenes first shows a scene in which a body falls, if
+    /// there is one.
     pub falls: bool,
 }
 
-/// A quantity of every body in every frame, by which bodies are colored on request.
+/// A quantity of every body in every frame, which a reader of the page can show as the color of the bodies.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Tint {
     /// Name of the quantity.
@@ -301,16 +301,16 @@ pub struct Scene {
     pub ground: Vec<History>,
     /// The instant at which the player opens; the first frame if `None`.
     pub moment: Option<Moment>,
-    /// Quantity by which bodies are colored on request.
+    /// Quantity that a reader of the page can show as the color of the bodies.
     pub tint: Option<Tint>,
-    /// Other runs, shown on request.
+    /// Other runs, which a reader of the page can overlay on the scene.
     pub ghosts: Option<Ghosts>,
     /// The scene in three dimensions; `None` if only its plane is known.
     pub depth: Option<Depth>,
 }
 
 impl Scene {
-    /// Returns the ends of a tie in a frame; `None` if the tie is torn or one of its bodies is not
+    /// Returns the ends of a tie in a frame; `None` if the tie is broken or one of its bodies is not
     /// drawn.
     pub(crate) fn ends(&self, tie: &Tie, frame: usize) -> Option<[Point; 2]> {
         let time = *self.frames.times.get(frame)?;
@@ -403,9 +403,11 @@ fn moving(scene: &Scene) -> impl Iterator<Item = usize> {
     (0..scene.bodies.len()).filter(|&at| scene.bodies[at].role != Role::Ground)
 }
 
-/// Maximum growth of a window to the left and to the right, and maximum growth upward, as shares of
-/// the larger side of the first frame. A body that topples comes to lie within the height of the
-/// stack, but may roll farther.
+/// Maximum distances by which a window may extend beyond the bodies of the first frame: to the left and to the right,
+/// and upward. They are fractions of the larger side of the rectangle around these bodies.
+///
+/// The horizontal limit is larger because a body that topples comes to rest within the height of the stack, but may
+/// roll farther.
 const REACH: [f64; 2] = [1.75, 0.15];
 
 /// Returns the window for the given frames, which contains the extent of the first frame and all

@@ -22,8 +22,10 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// Lays out rows in at most `width` (points). `numeric` has one element per column, and each row has one cell per
-    /// column; `head` may be empty.
+    /// Lays out rows in at most `width` (points).
+    ///
+    /// Each row has one cell per column; `head` may be empty. `numeric` has one element per column: `true` if the
+    /// column contains numbers.
     pub(crate) fn new(
         head: Vec<String>,
         rows: Vec<Vec<String>>,

@@ -1,10 +1,10 @@
 //! Simplification of polylines by omitting points that make no visible difference.
 
-/// Removes points of `run`; the line moves by at most about `tolerance` (px).
+/// Simplifies the polyline `run`: the result deviates from `run` by at most about `tolerance` (px).
 ///
-/// Long runs that advance along x are first thinned to the first, lowest, highest and last point of
-/// every half pixel, which looks the same. The Ramer–Douglas–Peucker algorithm then removes points
-/// on straight stretches.
+/// The polyline is first thinned. If x never decreases, the first, lowest, highest and last point of every half pixel
+/// along x remain, which looks the same; otherwise, points closer than `tolerance` to the previous remaining point are
+/// removed. The Ramer–Douglas–Peucker algorithm then removes points on nearly straight stretches.
 pub(crate) fn simplify(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     if run.len() < 3 {
         return run.to_vec();

@@ -32,7 +32,7 @@ pub(crate) fn provenance(document: &Document) -> Vec<(String, String)> {
     stamped(&document.provenance, STAMP.get(), document.language)
 }
 
-/// Adds the stamp to the pairs of the provenance, in a language.
+/// Adds the date and the commit to a provenance of pairs of name and value; added names are in the given language.
 fn stamped(
     pairs: &[(String, String)],
     stamp: Option<&Stamp>,

@@ -60,7 +60,7 @@ impl Rating {
 pub enum Cell {
     /// Plain text.
     Text(String),
-    /// Text that is the same in all languages: a key or a value of an input file, or a name that a user gave.
+    /// Text that is not translated: a key or a value of an input file, or a name that a user gave.
     Verbatim(String),
     /// Text with a rating; the text must state the rating too, because the color only repeats the
     /// rating.
@@ -80,7 +80,7 @@ impl Cell {
         Self::Text(text.into())
     }
 
-    /// Creates a cell of text that is the same in all languages.
+    /// Creates a cell of text that is not translated.
     pub fn verbatim(text: impl Into<String>) -> Self {
         Self::Verbatim(text.into())
     }

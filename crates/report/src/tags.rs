@@ -22,7 +22,7 @@ struct Element {
 enum Kid {
     /// Another element.
     Element(usize),
-    /// Content of a page, by its marked-content identifier.
+    /// Content of the page at index `page`, with the marked-content identifier `number`.
     Painted { page: usize, number: i32 },
 }
 
@@ -46,15 +46,15 @@ impl Tags {
         self.elements[place].role
     }
 
-    /// Records that a page shows content of an element under a marked-content identifier.
+    /// Adds content of a page to the element at index `place`; `number` is its marked-content identifier.
     pub(crate) fn paint(&mut self, place: usize, page: usize, number: i32) {
         self.elements[place].kids.push(Kid::Painted { page, number });
     }
 
     /// Writes the structure tree.
     ///
-    /// `pages` are the pages of the document, `painted` are the elements of each page by their
-    /// marked-content identifiers, and `next` allocates references.
+    /// `pages` are the pages of the document, and `next` allocates references. For each page, `painted` lists the
+    /// indices of the elements that own its marked content, in the order of the marked-content identifiers.
     pub(crate) fn write(
         &self,
         pdf: &mut Pdf,

@@ -8,7 +8,7 @@ use crate::{
 /// Character set of a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Characters {
-    /// Braille patterns for pictures, and blocks of eight heights for histories.
+    /// Braille patterns for pictures, and block characters of eight heights for histories.
     #[default]
     Unicode,
     /// ASCII characters only.
@@ -142,7 +142,7 @@ fn braille(dot: impl Fn(usize, usize) -> bool) -> char {
     if code == 0 { ' ' } else { char::from_u32(0x2800 + code).unwrap_or(' ') }
 }
 
-/// Returns the ASCII character that most resembles a cell.
+/// Returns an ASCII character that resembles the dots of a cell; a space if no dot is set.
 fn ascii(dot: impl Fn(usize, usize) -> bool) -> char {
     let count = |rows: [usize; 2]| {
         let dots = rows.iter().flat_map(|y| [dot(0, *y), dot(1, *y)]);

@@ -1,6 +1,6 @@
-//! "Try a change": a report with an embedded page that contains the program.
+//! The button "Try a change" of a report, which opens an embedded page that contains the program.
 
-/// An embedded page that contains the program, and its start data.
+/// A page that contains the program and is embedded in a report, and the data with which it starts.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a> {
     /// The page, as built by [`Shell`](crate::Shell).
@@ -9,11 +9,11 @@ pub struct Trial<'a> {
     pub start: &'a str,
 }
 
-/// Markup of the control that opens the embedded page.
+/// Markup of the button, and of the dialog that shows the embedded page.
 pub(crate) const OPENER: &str = include_str!("../assets/trial.html");
 
-/// Script of the control.
+/// Script of the button and the dialog.
 pub(crate) const SCRIPT: &str = include_str!("../assets/trial.js");
 
-/// Style sheet of the control.
+/// Style sheet of the button and the dialog.
 pub(crate) const STYLE: &str = include_str!("../assets/trial.css");

@@ -26,7 +26,7 @@ use crate::{
 ///   (the index in the scene), `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device) and
 ///   `displacement` (m): the displacement vector of the origin of the body since the first frame.
 ///   Bodies without a finite pose are left out.
-/// - Forces: a vertex at each point of contact, with `force` (N) as a vector.
+/// - Forces: a vertex at each point of application, with `force` (N) as a vector.
 pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     let frames = sampled(scene, rate);
     let digits = frames.len().to_string().len().max(4);
@@ -71,7 +71,7 @@ fn index_entry(index: &mut String, time: f64, part: usize, file: &str) {
     );
 }
 
-/// Returns the complete index file.
+/// Appends the closing tags to the index file.
 fn closed_index(index: String) -> String {
     index + "</Collection>\n</VTKFile>\n"
 }

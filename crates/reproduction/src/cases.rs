@@ -73,7 +73,8 @@ pub(super) struct PaperCases {
 }
 
 impl PaperCases {
-    /// Creates the cases; `record` is the ground motion of the six barrels.
+    /// Creates the cases. `record` is the file of the ground motion of the six barrels; if `None`, they are shaken by
+    /// the bundled record.
     pub(super) fn new(record: Option<&Path>) -> Result<Self, ReproduceError> {
         let change = match record {
             Some(path) => record_of(path),
@@ -103,7 +104,7 @@ fn record_of(path: &Path) -> String {
     format!("motion.record={}", serde_json::Value::from(path.display().to_string()))
 }
 
-/// Identifies the paper's record by its peak before any scaling.
+/// Reads a record, and recognizes the paper's record by its peak acceleration before scaling.
 ///
 /// # Errors
 /// If the file cannot be read.

@@ -21,7 +21,7 @@ pub enum Agreement {
 }
 
 impl Agreement {
-    /// Returns the words for tables.
+    /// Returns the agreement as worded in the tables.
     pub fn words(self) -> &'static str {
         match self {
             Self::Agrees => "agrees",
@@ -54,7 +54,7 @@ pub struct Comparison {
     pub why: String,
 }
 
-/// Text in place of a published result that the paper does not state.
+/// Placeholder for a result that the paper does not state.
 pub(crate) const NOT_STATED: &str = "not stated";
 
 impl Comparison {
@@ -95,7 +95,7 @@ pub(super) fn table(rows: &[Comparison]) -> String {
     text
 }
 
-/// Formats a phrase as a sentence: a capital letter first, a period last.
+/// Capitalizes a phrase and ends it with a period; an empty phrase stays empty.
 fn sentence(words: &str) -> String {
     let end = if words.is_empty() || words.ends_with('.') { "" } else { "." };
     format!("{}{end}", capital(words))

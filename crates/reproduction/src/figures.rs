@@ -99,8 +99,8 @@ fn named(run: &Run, body: usize) -> String {
 /// barrel. At this distance, the arrow does not cover the body number.
 const ARROW_END: f64 = 0.5;
 
-/// Heights (m) of the start and end of an arrow to the ground; the arrow is drawn below a barrel,
-/// since the rack is too flat for it.
+/// Heights (m) of the start and the end of an arrow from a rack to the ground. The rack is too flat for an
+/// arrow, so the arrow is drawn below each barrel on the rack.
 const GROUND_ARROW: [f64; 2] = [0.07, -0.05];
 
 /// Draws the stack at rest with the paper's body numbers. As in the paper, an arrow points from each contact body,
@@ -192,7 +192,7 @@ pub(super) fn peak_velocity_time(run: &Run) -> Option<f64> {
     fastest.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())).map(|(_, time)| *time)
 }
 
-/// Draws the stress around one of the paper's bodies.
+/// Plots the normal stress along the boundary of one of the paper's bodies, at rest and at its maximum.
 pub(super) fn envelope(run: &Run, number: u32, id: &str, caption: &str) -> Option<Block> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
@@ -270,7 +270,7 @@ fn is_above(run: &Run, one: usize, other: usize) -> bool {
         .any(|JointForces { joint, .. }| [joint.upper, joint.lower] == [one, other])
 }
 
-/// Returns `true` if the body with the contact nodes is a rack in every pair of bodies that touch by design.
+/// Returns `true` if racks have the contact nodes in all pairs of bodies that touch by design.
 pub(super) fn racks_carry_the_nodes(run: &Run) -> bool {
     let parts = &run.assembly.parts;
     designed_pairs(run).all(|(contactor, _, _)| parts[contactor].kind == PartKind::Rack)

@@ -94,10 +94,12 @@ impl From<GroundError> for ReproduceError {
 /// `record` is the file of the Hollywood Storage record, north-south, which cannot be distributed
 /// with the program. Without this file, the six barrels are shaken by the bundled record of South
 /// Napa, and results that depend on the motion are not compared. If `studies` is `true`,
-/// sensitivity studies follow, which are most of the work: each changes one quantity at a time, or
-/// the contact parameters by 10 %. `progress` is called with the number of completed runs and the
-/// total number of runs, from several threads, and may stop the work. If it stops the work after
-/// all cases are completed, the result has no studies.
+/// sensitivity studies follow, which take most of the time: each changes one quantity at a time, or
+/// the contact parameters by 10 %.
+///
+/// `progress` is called from several threads, with the number of completed runs and the total number of runs. It stops
+/// the work by returning [`ControlFlow::Break`]. If all cases of the paper are completed by then, the result is
+/// returned without studies.
 ///
 /// The result depends only on the program, the platform and the record.
 ///
@@ -132,7 +134,7 @@ pub fn table(found: &Reproduction) -> String {
     compare::table(&found.comparisons)
 }
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

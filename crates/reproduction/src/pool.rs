@@ -40,8 +40,8 @@ pub(super) struct Done {
 
 /// Runs all jobs on all cores and returns their results in order.
 ///
-/// `progress` is called repeatedly with the number of completed jobs and the total number of jobs,
-/// and may stop the work; jobs that are not completed by then are `None`.
+/// `progress` is called repeatedly with the number of completed jobs and the total number of jobs. It stops the work by
+/// returning [`ControlFlow::Break`]; jobs that are not completed by then are `None`.
 pub(super) fn run_all(
     jobs: &[Job],
     progress: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),

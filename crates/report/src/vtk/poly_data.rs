@@ -8,7 +8,7 @@ use flate2::write::ZlibEncoder;
 
 use crate::POSE_QUANTUM;
 
-/// A file that is being written. Each array is compressed by itself.
+/// A file that is being written. Each array is compressed separately.
 pub(super) struct PolyData {
     markup: String,
     arrays: Vec<u8>,
@@ -26,13 +26,13 @@ impl PolyData {
         Self { markup, arrays: Vec::new() }
     }
 
-    /// Opens an element.
+    /// Opens an XML element: `element` is its name, followed by its attributes if it has any.
     pub(super) fn open(&mut self, element: &str) {
         // Writing to a String cannot fail, here and below.
         let _ = writeln!(self.markup, "<{element}>");
     }
 
-    /// Closes an element.
+    /// Closes an XML element.
     pub(super) fn close(&mut self, name: &str) {
         self.open(&format!("/{name}"));
     }
@@ -44,8 +44,9 @@ impl PolyData {
         self.close("Points");
     }
 
-    /// Adds vectors of lengths (m), rounded to multiples of a quantum that is too small to be
-    /// visible, which makes the file smaller by a third.
+    /// Adds an array of positions or displacements (m), with components rounded to multiples of [`POSE_QUANTUM`].
+    ///
+    /// The rounding is too small to be visible and makes the file smaller by a third.
     pub(super) fn lengths(&mut self, name: &str, values: impl Iterator<Item = [f64; 3]>) {
         self.vectors(
             name,
@@ -53,7 +54,7 @@ impl PolyData {
         );
     }
 
-    /// Adds vectors in single precision.
+    /// Adds an array of vectors in single precision.
     #[expect(clippy::cast_possible_truncation, reason = "single precision suffices for a picture")]
     pub(super) fn vectors(&mut self, name: &str, values: impl Iterator<Item = [f64; 3]>) {
         self.array(
@@ -62,14 +63,15 @@ impl PolyData {
         );
     }
 
-    /// Adds integers, all of which fit easily into 32 bits.
+    /// Adds an array of 32-bit integers; the values are far below the limit of this type.
     pub(super) fn whole(&mut self, name: &str, values: impl Iterator<Item = usize>) {
         let number = |value| i32::try_from(value).unwrap_or(i32::MAX).to_le_bytes();
         self.array(("Int32", name, 1), values.map(number));
     }
 
-    /// Adds cells of a kind: the indices of their points, one cell after the other, and the number
-    /// of points of each cell.
+    /// Adds all cells of one kind, such as `Lines`.
+    ///
+    /// `points` are the indices of their points, cell by cell, and `counts` are the numbers of points per cell.
     pub(super) fn cells(
         &mut self,
         name: &str,

@@ -31,7 +31,7 @@ pub struct SolidTie {
     pub bodies: [usize; 2],
     /// Ends (m), each in the frame of its body.
     pub points: [[f64; 3]; 2],
-    /// Time (s) from which the tie is broken and not drawn.
+    /// Time (s) at which the tie breaks; a broken tie is not drawn.
     pub torn_at: Option<f64>,
 }
 
@@ -40,7 +40,7 @@ pub struct SolidTie {
 pub struct Solids {
     /// The bodies.
     pub bodies: Vec<SolidBody>,
-    /// The straps and ties, numbered after the bodies.
+    /// The straps and ties. In the files, their numbers continue those of the bodies.
     pub ties: Vec<SolidTie>,
     /// Times of the frames (s).
     pub times: Vec<f64>,
@@ -50,13 +50,14 @@ pub struct Solids {
     pub twists: Vec<Vec<[f64; 6]>>,
 }
 
-/// Writes the files of three-dimensional bodies for ParaView, one after the other, to be placed into a separate folder.
+/// Creates the ParaView files of three-dimensional bodies and passes them to `put`, one at a time.
 ///
-/// `stack.pvd` is the file to open. There is a `bodies-*.vtp` for each time, and `bodies.csv` lists
-/// the names of the bodies by number.
+/// The files are to be written into a separate folder. `stack.pvd` is the file to open. There is a `bodies-*.vtp` for
+/// each time, and `bodies.csv` lists the names of the bodies and ties by number.
 ///
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, and lengths are in m, rounded
 /// as in [`paraview`](super::paraview).
+///
 /// Surfaces are triangles, straps and ties are lines. Cells carry `body` (the index of the body or
 /// tie), `role` (as in [`paraview`](super::paraview)), `level` (0 for a tie) and `displacement` (m):
 /// the displacement vector of the origin of the body since the first frame (0 for a tie). Points
@@ -146,8 +147,9 @@ fn file(solids: &Solids, frame: usize) -> Vec<u8> {
     file.finish()
 }
 
-/// Returns the position of a point `r` in the frame of a body: `p + r + 2 w (v × r) + 2 v × (v × r)` for a body at `p`
-/// with the quaternion `w, v`.
+/// Converts a point `r` from the frame of a body to the world frame.
+///
+/// For a body at `p` with the unit quaternion `w, v`, the result is `p + r + 2 w (v × r) + 2 v × (v × r)`.
 fn placed([x, y, z, w, a, b, c]: [f64; 7], point: [f64; 3]) -> [f64; 3] {
     let v = [a, b, c];
     let once = cross(v, point);
@@ -156,7 +158,7 @@ fn placed([x, y, z, w, a, b, c]: [f64; 7], point: [f64; 3]) -> [f64; 3] {
     [x + along(0), y + along(1), z + along(2)]
 }
 
-/// Returns the velocity (m/s) of a point of a body; `place` is the position of the point.
+/// Returns the velocity (m/s) of a point of a body; `place` is the position of the point in the world frame.
 fn velocity(pose: [f64; 7], [u, v, w, a, b, c]: [f64; 6], place: [f64; 3]) -> [f64; 3] {
     let arm = [place[0] - pose[0], place[1] - pose[1], place[2] - pose[2]];
     let turning = cross([a, b, c], arm);
