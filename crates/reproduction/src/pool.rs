@@ -11,9 +11,9 @@ use barrelstack::summary::Summary;
 
 use super::ReproduceError;
 
-/// One run.
+/// A scenario to run, and what to keep of the run.
 pub(super) struct Job {
-    /// Label, for errors.
+    /// Label of the job in error messages.
     pub(super) label: String,
     /// The scenario.
     pub(super) scenario: Scenario,
@@ -32,7 +32,7 @@ impl Job {
 pub(super) struct Done {
     /// Summary of the run.
     pub(super) summary: Summary,
-    /// The recorded run, if the job keeps it.
+    /// The whole run; `None` if [`Job::keep`] is `false`.
     pub(super) run: Option<Box<Run>>,
     /// Result of the run, in one sentence.
     pub(super) headline: String,
@@ -40,8 +40,8 @@ pub(super) struct Done {
 
 /// Runs all jobs on all cores and returns their results in order.
 ///
-/// `progress` is called repeatedly with the number of completed jobs and the total number of jobs,
-/// and may stop the work; jobs that are not completed by then are `None`.
+/// `progress` is called repeatedly with the number of completed jobs and the total number of jobs. The work stops when
+/// it returns [`ControlFlow::Break`]. The result of a job that is not completed by then is `None`.
 pub(super) fn run_all(
     jobs: &[Job],
     progress: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
