@@ -44,7 +44,7 @@ pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) ->
     }
 }
 
-/// Summarizes the agreement of all rows.
+/// Returns a sentence with the number of published results that agree, that are within a wider band, and that differ.
 pub(super) fn headline(rows: &[Comparison]) -> String {
     let count = |agreement| rows.iter().filter(|row| row.agreement == agreement).count();
     let compared = rows.len() - count(Agreement::NotCompared);
@@ -214,7 +214,7 @@ fn figure_6(results: &Results) -> Vec<Block> {
     blocks
 }
 
-/// States the results under the substitute motion.
+/// Describes the results of the six barrels under the motion that replaces the paper's record.
 fn stand_in(results: &Results) -> String {
     let slip = |summary: &Summary| {
         let slip = summary.demands.base_slip_residual.unwrap_or(f64::NAN);
@@ -239,7 +239,8 @@ fn stand_in(results: &Results) -> String {
     )
 }
 
-/// Converts the instants of a sequence at full scale to the equivalent instants at half scale.
+/// Converts the times (s) of panels at full scale to the equivalent times at half scale, which are smaller by a factor
+/// of √2.
 fn equivalent(panels: &[(f64, String)]) -> Vec<(f64, String)> {
     let root = 2.0_f64.sqrt();
     panels.iter().map(|(time, note)| (time / root, note.clone())).collect()

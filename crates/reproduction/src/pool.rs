@@ -11,9 +11,9 @@ use barrelstack::summary::Summary;
 
 use super::ReproduceError;
 
-/// One run.
+/// A scenario to run, and what to keep of the run.
 pub(super) struct Job {
-    /// Label, for errors.
+    /// Label of the job in error messages.
     pub(super) label: String,
     /// The scenario.
     pub(super) scenario: Scenario,
@@ -32,7 +32,7 @@ impl Job {
 pub(super) struct Done {
     /// Summary of the run.
     pub(super) summary: Summary,
-    /// The recorded run, if the job keeps it.
+    /// The whole run; `None` if [`Job::keep`] is `false`.
     pub(super) run: Option<Box<Run>>,
     /// Result of the run, in one sentence.
     pub(super) headline: String,

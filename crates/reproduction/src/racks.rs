@@ -13,11 +13,11 @@ use super::vary::{self, brief, with};
 /// A rack: a description, and the function that changes the rack of the catalog into this rack.
 type Rack = (&'static str, fn(&mut StackSpec));
 
-/// Other solid racks with feet, found by random searches over cradle, feet, clearance, rails, node
-/// spacing and mass.
+/// Other solid racks with feet. They were found by random searches in which the cradle, feet, clearance, rails, node
+/// spacing and mass varied.
 ///
-/// Some of the searches used only the cases across the barrels. The rack of the catalog was chosen because it
-/// reproduces the case along the barrels, too.
+/// Some of the searches considered only the cases in the section across the barrels. The rack of the catalog was chosen
+/// because it also reproduces the case in the section along the barrels.
 const RACKS: [Rack; 4] = [
     ("cradle ±30°, feet ±6 cm, clearance 12 cm, 30 kg", |stack| {
         cradle(stack, 30.0);
@@ -90,7 +90,7 @@ pub(super) fn jobs(cases: &PaperCases) -> Vec<Job> {
     jobs
 }
 
-/// Collects the summaries, which are in the order of the jobs.
+/// Combines the summaries of the runs of each rack, which `next` returns in the order of the jobs.
 pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> Vec<Tried> {
     let mut found = Vec::new();
     for (name, _) in RACKS {

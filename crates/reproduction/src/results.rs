@@ -32,7 +32,7 @@ pub(super) struct Ran {
     pub(super) summary: Summary,
 }
 
-/// All results.
+/// Results of all cases and studies.
 pub(super) struct Results {
     /// The ground motion of the six barrels.
     pub(super) motion: Motion,
@@ -56,7 +56,7 @@ pub(super) struct Results {
     pub(super) racks: Vec<Tried>,
     /// For each sampled rack near the reconstructed rack, the findings of the paper that it reproduces.
     pub(super) neighborhood: Vec<Kept>,
-    /// Effects of single quantities on each case.
+    /// Sensitivity studies of the cases; empty if the studies were left out.
     pub(super) studies: Vec<Study>,
 }
 

@@ -1,4 +1,4 @@
-//! One row for every number and every finding of the paper.
+//! The comparison with the paper: one row for each of its numbers and findings.
 
 use barrelstack::summary::{BodySummary, Summary};
 use barrelstack_report::significant;
@@ -8,10 +8,10 @@ use super::results::Results;
 use super::study::{Study, Subject};
 use super::{ensemble, figures, stress};
 
-/// The wider band that the project accepts for the stress amplification.
+/// The [`Band`] that the project accepts for the stress amplification.
 const STRESS_BAND: Option<Band> = Some((2.5, 3.5, "2.5 to 3.5"));
 
-/// Returns all rows, in the order of the paper.
+/// Returns all rows of the comparison, in the order of the paper.
 pub(super) fn all(results: &Results) -> Vec<Comparison> {
     let mut rows = six(results);
     rows.extend(eight(results));
@@ -45,8 +45,8 @@ fn fell(summary: &Summary, name: &str) -> Option<f64> {
     body(summary, name)?.fell_at
 }
 
-/// Returns the time (s) at which both barrels of the top level had fallen, in a stack of four
-/// levels.
+/// Returns the time (s) by which both barrels of the top level have fallen, in a stack of four levels; `None` unless
+/// both fall.
 fn top_gone(summary: &Summary) -> Option<f64> {
     Some(fell(summary, "B4.1")?.max(fell(summary, "B4.2")?))
 }
@@ -58,7 +58,11 @@ fn top_falls_before_others(summary: &Summary) -> bool {
     top_gone(summary).is_some_and(|top| others.filter_map(|b| b.fell_at).all(|other| other > top))
 }
 
-/// Describes the changes of a study that bring our time to the published one, or the changes with the largest effect.
+/// Describes how the changes of a study affect the time that is compared with the `published` time (s).
+///
+/// If our time without any change is within 5 % of the published time, no change is named. Otherwise, names the changes
+/// that bring our time to the published time or beyond it or, if there are none, the two changes with the largest
+/// effect. The range of our times in the study is added in all cases. Without a study, the result is empty.
 fn reasons(study: Option<&Study>, published: f64) -> String {
     let Some(study) = study else { return String::new() };
     let time = |summary: &Summary| study.subject.time(summary);

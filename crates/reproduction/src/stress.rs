@@ -1,4 +1,4 @@
-//! The definitions of stress amplification that the paper's words allow, with their values.
+//! The definitions of the stress amplification that are consistent with the wording of the paper, and their values.
 
 use barrelstack::run::Run;
 use barrelstack::watch::StressEnvelope;
@@ -25,7 +25,8 @@ fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     Some(joint.until_loss.vertical.0 / joint.at_rest)
 }
 
-/// A definition: its name, the function that computes its value in a run, and an explanation.
+/// A definition of the stress amplification: its name, the function that computes its value for a run, and an
+/// explanation.
 type Definition = (&'static str, fn(&Run) -> Option<f64>, &'static str);
 
 /// Definitions of the stress amplification of barrel 1.
@@ -68,8 +69,10 @@ const DEFINITIONS: [Definition; 7] = [
     ),
 ];
 
-/// Returns the mean of the largest stresses on barrel 1 until the first loss of seat, divided by
-/// the mean of the stress at rest. Both means are taken over the boundary that is loaded at rest.
+/// Returns the mean of the stress envelope of barrel 1, divided by the mean stress at rest.
+///
+/// The envelope is the largest stress at each point until the first loss of seat. Both means are taken over the part of
+/// the boundary that is loaded at rest.
 pub(super) fn average(run: &Run) -> Option<f64> {
     envelope(run, 1)?.mean_amplification()
 }

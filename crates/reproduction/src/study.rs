@@ -27,7 +27,7 @@ impl Subject {
         }
     }
 
-    /// Returns the name of the time that is compared with the paper's time, for captions.
+    /// Returns the name, for captions, of the event whose time is compared with the paper's time.
     pub(super) fn clock(self) -> &'static str {
         match self {
             Self::Six | Self::Along => "first loss of seat",
@@ -35,7 +35,7 @@ impl Subject {
         }
     }
 
-    /// Returns, for a run, the time (s) that is compared with the paper's time.
+    /// Returns the time (s) of the event that [`Subject::clock`] names; `None` if the event does not occur in the run.
     pub(super) fn time(self, summary: &Summary) -> Option<f64> {
         match self {
             Self::Six | Self::Along => summary.outcome.time,
@@ -54,24 +54,25 @@ impl Subject {
     }
 }
 
-/// One quantity with its changed values.
+/// A quantity that the study changes, and its changes.
 pub(super) struct Factor<Run = Scenario> {
     /// The quantity with its regular value, such as "cradle angle 28°".
     pub(super) name: String,
-    /// Name of each change, with the scenario or the result of the change.
+    /// Name of each change, with its scenario or, after the runs, with its [`Summary`].
     pub(super) ends: Vec<(String, Run)>,
 }
 
 /// A factor with the results of its runs.
 pub(super) type Effect = Factor<Summary>;
 
-/// A case with all its effects.
+/// A case, and the effects of all factors on it.
 pub(super) struct Study {
     /// The case.
     pub(super) subject: Subject,
     /// Result of the case without any change.
     pub(super) base: Summary,
-    /// Effects of all factors, sorted by their effect on the time, the largest first.
+    /// Effects of all factors, sorted by their largest effect on the compared time ([`Subject::time`]), the largest
+    /// first.
     pub(super) effects: Vec<Effect>,
 }
 
@@ -209,8 +210,8 @@ impl Study {
         })
     }
 
-    /// Returns the smallest and largest time (s) among all changes for which the stack collapses,
-    /// including the case as stated.
+    /// Returns the smallest and the largest compared time ([`Subject::time`], s) over the unchanged case and all
+    /// changes. Runs without this time are left out; `None` if no run has it.
     pub(super) fn times(&self) -> Option<[f64; 2]> {
         let all = || self.changes().map(|(_, summary)| summary).chain([&self.base]);
         let times = || all().filter_map(|summary| self.subject.time(summary));
@@ -245,8 +246,8 @@ impl Study {
         known.min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
-    /// Returns descriptions of at most `count` changes with the largest effect on a quantity, with
-    /// the results.
+    /// Returns descriptions of the `count` changes with the largest effect on a quantity, each with the resulting
+    /// value of the quantity; fewer if there are fewer changes.
     pub(super) fn strongest(
         &self,
         count: usize,

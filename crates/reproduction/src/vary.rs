@@ -1,4 +1,4 @@
-//! Single changes of a scenario.
+//! Functions that make single changes to a scenario.
 
 use barrelstack::scenario::{
     Cradle, Fill, Friction, Interface, MotionSource, Scenario, Scene, StackSpec,

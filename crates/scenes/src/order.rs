@@ -77,7 +77,8 @@ fn laws<S: Space<Real = f64>>() -> Interface<S> {
     interface(normal, coulomb(0.35, 2e6, 1e3))
 }
 
-/// Returns a planar body by its kind: circle, box, box with round corners, or barrel in side view.
+/// Returns a planar body of the given kind: circle (0), box (1), box with rounded corners (2), or barrel in side
+/// view (3).
 fn planar(kind: usize, name: &str, mass: f64, x: f64, z: f64, turn: f64) -> Body<Planar> {
     let radius = 0.3;
     let shape = match kind {
@@ -94,7 +95,7 @@ fn planar(kind: usize, name: &str, mass: f64, x: f64, z: f64, turn: f64) -> Body
     }
 }
 
-/// Returns a three-dimensional body by its kind: ball, capsule (named "tube"), barrel, or block.
+/// Returns a three-dimensional body of the given kind: ball (0), capsule (1, named "tube"), barrel (2), or block (3).
 fn solid(kind: usize, name: &str, mass: f64, place: Vec3, turn: Vec3) -> Body<Spatial> {
     let inertia = Vec3::new(0.03, 0.045, 0.045) * mass;
     let hull = match kind {

@@ -43,7 +43,7 @@ pub fn pose(x: f64, z: f64, orientation: f64) -> Pose<Planar> {
     Pose { position: Vec2::new(x, z), orientation }
 }
 
-/// Returns a free disc with one rolling node: the point of its rim that is deepest in the surface of the other body.
+/// Returns a free disc with one rolling node: the point of its rim with the largest penetration into the other body.
 ///
 /// `gyration_squared` is the squared radius of gyration k² (m²), which is ½ r² for a solid disc.
 pub fn disc(
@@ -114,7 +114,7 @@ pub fn points(points: &[Vec2]) -> Nodes<Planar> {
     )
 }
 
-/// Returns an interface whose constants apply to each node.
+/// Returns an interface with the given laws, whose constants are per node ([`Basis::Node`]).
 pub fn interface<S: Space<Real = f64>>(normal: NormalLaw, friction: FrictionLaw) -> Interface<S> {
     Interface {
         name: "contact".into(),
@@ -182,7 +182,7 @@ pub struct Scene<S: Space = Planar> {
     pub model: Model<S>,
     /// The current state.
     pub state: State<S>,
-    /// The forces in the current state.
+    /// Working memory of the simulation, which holds the forces in the current state.
     pub scratch: Scratch<S>,
     /// Integration method; velocity Verlet by default.
     pub method: Method,

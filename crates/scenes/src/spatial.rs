@@ -59,7 +59,8 @@ pub fn points(points: &[Vec3]) -> Nodes<Spatial> {
     )
 }
 
-/// Returns the four corners (m) of a horizontal rectangle with half sides `x` and `y` at the height `z`.
+/// Returns the corners (m) of a horizontal rectangle at height `z`, centered on the vertical axis. Its sides have the
+/// lengths `2x` and `2y`.
 pub fn corners(x: f64, y: f64, z: f64) -> [Vec3; 4] {
     [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b)| Vec3::new(a * x, b * y, z))
 }

@@ -59,14 +59,17 @@ pub struct Selection {
     pub mean: Vec<f64>,
     /// Standard deviation of ln Sa over the set, at each period, with the divisor `n − 1`.
     pub deviation: Vec<f64>,
-    /// Number of candidates that match the mean of the target with a scale factor within the limits.
+    /// Number of candidates that can be scaled to the mean of the target with a scale factor within the limits.
+    ///
+    /// Scaling makes the ln Sa of the candidate equal to the mean of the target at the period of the condition. If the
+    /// target is not conditional, scaling makes their averages over all periods equal.
     pub eligible: usize,
     /// Number of rounds of exchanges.
     pub rounds: usize,
 }
 
 impl Selection {
-    /// Returns the relative error of the median at the period at which this error is largest.
+    /// Returns the maximum relative error of the median over all periods.
     pub fn median_error(&self, target: &SelectionTarget) -> f64 {
         let errors = self.mean.iter().zip(target.mean());
         errors.fold(0.0, |worst, (ours, wanted)| worst.max((libm::exp(ours - wanted) - 1.0).abs()))
@@ -181,18 +184,18 @@ fn check(
     Ok(())
 }
 
-/// A candidate before scaling.
+/// An unscaled candidate.
 struct Row {
     candidate: usize,
     /// ln Sa at each period.
     spectrum: Vec<f64>,
-    /// Level that scaling adjusts to the target: ln Sa at the period of the condition, or the mean of ln Sa over all
-    /// periods.
+    /// Level of the spectrum: ln Sa at the period of the condition, or the mean of ln Sa over all periods if the
+    /// target is not conditional. Scaling makes it equal to the level of a simulated spectrum.
     level: f64,
     group: usize,
 }
 
-/// All candidates before scaling, and the limits of scaling.
+/// All unscaled candidates, and the limits on the scale factor and on the number of records of one group.
 struct Pool {
     rows: Vec<Row>,
     groups: usize,
@@ -234,8 +237,8 @@ impl Pool {
         (self.limits[0]..=self.limits[1]).contains(&(level - self.rows[row].level))
     }
 
-    /// Returns the number of candidates that match the mean of the target with a scale factor within the
-    /// limits.
+    /// Returns the number of candidates that can be scaled to the level of the mean of the target with a scale factor
+    /// within the limits.
     fn eligible(&self, target: &SelectionTarget) -> usize {
         let level = self.level(target.mean());
         (0..self.rows.len()).filter(|row| self.reaches(*row, level)).count()
@@ -267,7 +270,7 @@ struct Set<'a> {
     /// scaled.
     members: Vec<(usize, f64)>,
     /// For each period, the sum over all members of the difference between ln Sa and the mean of the target. The mean
-    /// is subtracted to preserve digits.
+    /// is subtracted to avoid cancellation in the standard deviation.
     sums: Vec<f64>,
     squares: Vec<f64>,
     /// Weight of the error of the standard deviation.

@@ -27,7 +27,7 @@ pub use correlation::spectral_correlation;
 pub use greedy::{Candidate, Choosing, Chosen, Selection, select};
 pub use target::{Condition, PERIODS, SelectionTarget};
 
-/// The example of the README, which is compiled and run as a doc test.
+/// The example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

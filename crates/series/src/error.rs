@@ -8,7 +8,7 @@ pub enum MotionError {
     /// A parameter lies outside its range.
     #[error("{what}: expected {expected}, found {found}")]
     Parameter {
-        /// The parameter, in words.
+        /// Name of the parameter, such as "period of FIV3 (s)".
         what: String,
         /// The permitted range.
         expected: String,
@@ -53,14 +53,14 @@ pub enum MotionError {
         /// Remedy for the user.
         remedy: String,
     },
-    /// An iteration did not reach its tolerance.
+    /// An iterative computation did not reach its tolerance.
     #[error("{what} reached {reached} after {rounds} rounds, but {wanted} is required; {remedy}")]
     NotConverged {
-        /// Name of the iteration.
+        /// Name of the computation, such as "spectral matching".
         what: String,
         /// Smallest misfit reached, formatted.
         reached: String,
-        /// Number of rounds.
+        /// Number of iterations.
         rounds: usize,
         /// Required tolerance, formatted.
         wanted: String,

@@ -37,9 +37,9 @@ pub enum IntensityMeasure {
     /// Time (s) during which the Arias intensity grows from one fraction of its final value to another fraction
     /// (Trifunac and Brady 1975).
     SignificantDuration {
-        /// Start of the duration as a fraction of the Arias intensity, such as 0.05.
+        /// Fraction of the final Arias intensity at which the duration starts, such as 0.05.
         from: f64,
-        /// End of the duration as a fraction of the Arias intensity, such as 0.95.
+        /// Fraction of the final Arias intensity at which the duration ends, such as 0.95.
         to: f64,
     },
     /// Time (s) between the first and the last crossing of `threshold` by `|a|`.
@@ -87,7 +87,7 @@ enum Growth {
     Power(f64),
     /// Increasing with the factor, but not as a power of it.
     Monotone,
-    /// Constant, or increasing in steps; the text states why the measure cannot be scaled.
+    /// Constant, or increasing in steps. The string is the reason why a motion cannot be scaled to the measure.
     None(&'static str),
 }
 
@@ -122,9 +122,9 @@ impl IntensityMeasure {
         }
     }
 
-    /// Returns the scale factor that brings this measure to `target` (SI units).
+    /// Returns the scale factor of a motion at which this measure equals `target` (SI units).
     ///
-    /// `value` gets a scale factor and returns the measure of the motion scaled by this factor.
+    /// `value` takes a scale factor and returns the measure of the motion scaled by this factor.
     /// `name` is the name of the motion in error messages.
     ///
     /// # Errors
@@ -240,8 +240,8 @@ impl IntensityMeasure {
     }
 }
 
-/// Finds the factor at which a growing measure reaches `target`, by bisection. Returns `None` if no
-/// factor reaches it.
+/// Finds, by bisection, the scale factor at which a measure that increases with the factor reaches `target`. Returns
+/// `None` if the measure does not reach it at any factor up to 10¹².
 fn bracketed(
     target: f64,
     value: impl Fn(f64) -> Result<f64, MotionError>,

@@ -14,9 +14,10 @@ const LAYER_STEPS: f64 = 40.0;
 /// A piecewise-linear acceleration at successively coarser time steps.
 pub struct Layers {
     time_step: f64,
-    /// Accelerations at steps of 1, 2, 4, … samples. Each value is a weighted mean over the step
-    /// before it and the step after it, with triangular weights. The mean is the exact load of an
-    /// oscillator whose impulse response is linear between the samples.
+    /// Accelerations at steps of 1, 2, 4, … samples. Each value is a weighted mean of the acceleration over the step
+    /// before it and the step after it. The weight decreases linearly from the time of the value to zero at one step
+    /// from it. For an oscillator whose impulse response is linear between the samples, these means as loads give the
+    /// exact response.
     layers: Vec<Vec<f64>>,
 }
 

@@ -29,7 +29,7 @@ pub mod words;
 
 pub use error::MotionError;
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

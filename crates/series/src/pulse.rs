@@ -56,7 +56,7 @@ pub enum Pulse {
         /// Length of the pulse (s).
         duration: f64,
     },
-    /// Ricker wavelet `a = A (1 - 2u) exp(-u)` with `u = (π s/T)²`, middle at `2 T` and length
+    /// Ricker wavelet `a = A (1 - 2u) exp(-u)` with `u = (π s/T)²`, centered at `2 T` and of length
     /// `4 T`.
     ///
     /// Velocity and displacement return to zero, which makes this the safest pulse for tests.
@@ -66,7 +66,7 @@ pub enum Pulse {
         /// Period `T` of the spectral peak (s).
         period: f64,
     },
-    /// Gabor wavelet `v = V exp(-(π s/(γ T))²) cos(w s + ν)` with middle at `2 γ T` and length
+    /// Gabor wavelet `v = V exp(-(π s/(γ T))²) cos(w s + ν)`, centered at `2 γ T` and of length
     /// `4 γ T`.
     Gabor {
         /// Velocity amplitude `V` (m/s).
