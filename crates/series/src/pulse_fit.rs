@@ -22,7 +22,7 @@ pub struct PulseFit {
     pub peak_velocity: f64,
     /// Time at which the pulse starts (s); may lie before the record.
     pub start: f64,
-    /// Share of the squared velocity that the pulse explains, 0 to 1.
+    /// Share of the energy (the sum of the squared velocities) that the pulse explains, 0 to 1.
     ///
     /// For pulse-like near-fault records, the share is above about one half.
     pub energy_share: f64,
@@ -34,8 +34,8 @@ const WIDTHS: [f64; 5] = [1.05, 1.5, 2.0, 2.5, 3.0];
 /// Number of trial periods in a range of periods that spans a factor of e.
 const PER_E_FOLD: f64 = 14.0;
 
-/// Finds the pulse that explains most of the squared velocity, with a period from `shortest` to
-/// `longest` (s).
+/// Finds the pulse with a period from `shortest` to `longest` (s) that explains the largest share
+/// of the energy, as defined for [`PulseFit::energy_share`].
 ///
 /// All combinations of shift, period and width on a grid are compared by correlation with the sine
 /// and cosine forms of the pulse. The best combination is refined by coordinate search.
@@ -116,8 +116,9 @@ fn quadratures(period: f64, gamma: f64, s: f64) -> (f64, f64) {
     (window * cos, window * sin)
 }
 
-/// Finds the shift that explains most of the motion, by correlation with the cosine and the sine
-/// form at once.
+/// Finds the time (s) of the middle at which the pulse explains the largest sum of squared
+/// velocities. The motion is correlated with the cosine form and with the sine form. Returns this
+/// time and this sum.
 fn best_shift(
     spectrum: &[Complex],
     dt: f64,
@@ -157,8 +158,8 @@ struct Projection {
     explained: f64,
 }
 
-/// Computes the least-squares amplitudes of the cosine and sine forms, evaluated at the times of
-/// the samples.
+/// Computes the least-squares amplitudes of the cosine and sine forms of a trial pulse, and the sum
+/// of squared velocities that they explain. The forms are evaluated at the times of the samples.
 fn project(velocity: &[f64], dt: f64, trial: &Fit) -> Projection {
     let Fit { period, gamma, center, .. } = *trial;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]

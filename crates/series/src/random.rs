@@ -1,4 +1,5 @@
-//! A seeded random generator with the same numbers on every machine and in every version.
+//! A seeded random number generator that produces the same numbers on every machine and in every
+//! version.
 //!
 //! The generator is xoshiro256++ (Blackman and Vigna 2021), seeded by splitmix64, from the crate
 //! `rand_xoshiro`, which guarantees its values. Normal deviates use the Box-Muller method with this
@@ -9,7 +10,7 @@ use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use crate::math::{self, TAU};
 
-/// Random generator that all synthetic motions use.
+/// Random number generator that all synthetic motions use.
 ///
 /// ```
 /// use barrelstack_series::random::Random;
@@ -33,7 +34,7 @@ impl Random {
         self.bits.next_u64()
     }
 
-    /// Returns a uniform random number from 0 to below 1, with 53 random bits.
+    /// Returns a uniform random number in `[0, 1)`, with 53 random bits.
     pub fn uniform(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / 9_007_199_254_740_992.0
     }

@@ -12,9 +12,9 @@ pub struct ResponsePeaks {
     pub velocity: f64,
     /// Largest absolute acceleration of the mass (m/s²).
     pub acceleration: f64,
-    /// Pseudo-velocity `PSV = w Sd` (m/s).
+    /// Pseudo-velocity `PSV = w Sd` (m/s), where `w` is `2π` divided by the period.
     pub pseudo_velocity: f64,
-    /// Pseudo-acceleration `PSA = w² Sd` (m/s²); equals PGA at period 0.
+    /// Pseudo-acceleration `PSA = w² Sd` (m/s²), with the same `w`; equals PGA at period 0.
     pub pseudo_acceleration: f64,
 }
 
@@ -88,7 +88,7 @@ impl Step {
     }
 }
 
-/// Checks a period (s, zero allowed) and a damping ratio (0 to below 1).
+/// Checks that a period (s) is zero or positive, and that a damping ratio is in `0..1`.
 ///
 /// # Errors
 /// If the period or the damping ratio is out of range.
@@ -148,7 +148,7 @@ pub const TOGETHER: usize = 8;
 /// Oscillators of several periods that advance together; each result is bit-identical to that of a
 /// single oscillator.
 pub struct Bank {
-    /// Coefficients as in [`Step`], each for all oscillators.
+    /// The four displacement coefficients of a [`Step`], for each oscillator.
     displacement: [[f64; TOGETHER]; 4],
     velocity: [[f64; TOGETHER]; 4],
     /// Relative displacement of each oscillator.
@@ -185,8 +185,8 @@ impl Bank {
     }
 }
 
-/// Returns the larger of a peak and the magnitude of a value. The function is simple enough to be
-/// vectorized.
+/// Returns the larger of a peak and the magnitude of a value. The function is so simple that the
+/// compiler can vectorize loops that call it.
 #[inline]
 pub fn larger(peak: f64, value: f64) -> f64 {
     if value.abs() > peak { value.abs() } else { peak }

@@ -155,7 +155,7 @@ pub fn scaled(
     Ok(motion)
 }
 
-/// Returns the name of the event in which the record of the scenario was measured; `None` if no file states the name.
+/// Returns the name of the event from which the record of the scenario comes; `None` if no file states the name.
 ///
 /// # Errors
 /// If the record cannot be read.
@@ -233,7 +233,7 @@ fn on_one_clock(
     Ok((first, second, notes.into_iter().collect()))
 }
 
-/// Rejects a record that is no plausible ground motion, for example because its step of 5 ms is written as 5 s, or
+/// Rejects a record that is not a plausible ground motion, for example because its step of 5 ms is written as 5 s, or
 /// because it has only three values.
 fn require_strong_motion(record: &Record) -> Result<(), MotionError> {
     match record.channels.iter().find_map(Channel::implausible) {
@@ -257,7 +257,8 @@ fn horizontals(of: MeasuredOn) -> Option<Horizontals> {
 
 /// Scales the motion so that a measure of both horizontal components of its record reaches the specified value.
 ///
-/// The components are processed like the motion. Other kinds of scaling leave the motion unchanged.
+/// The components are processed like the motion. If `scale` is not for a measure of both components, the motion is
+/// returned unchanged.
 fn scaled_by_both(
     motion: GroundMotion,
     record: &Record,
@@ -279,8 +280,8 @@ fn scaled_by_both(
 /// Returns the requested processing; by default, [`Processing::compact`] for a raw record, and no processing for any
 /// other record.
 ///
-/// [`Processing::compact`] removes the pads of the filter, which are about half a minute of rest before the first
-/// arrival; a settled stack does not need this rest. Velocity and displacement are then corrected so that they end at
+/// [`Processing::compact`] removes the padding of the filter, which is about half a minute of rest before the first
+/// arrival. A settled stack does not need this rest. Velocity and displacement are then corrected so that they end at
 /// zero.
 fn processing_of(spec: &RecordMotion, record: &Record) -> Processing {
     match (spec.processing, record.stage) {

@@ -1,4 +1,4 @@
-//! The results of a scenario, whether it is simulated in planes or in three dimensions.
+//! The results of a scenario, whether it is simulated in vertical planes or in three dimensions.
 
 use std::ops::ControlFlow;
 
@@ -21,7 +21,7 @@ use crate::report::document;
 use crate::variants::Answer;
 use crate::words;
 
-/// Results of a scenario that is simulated in planes or in three dimensions.
+/// Results of a scenario, simulated either in vertical planes or in three dimensions.
 #[derive(Clone, Debug)]
 pub enum AnyAnswer {
     /// Results in one or both vertical planes.
@@ -30,7 +30,7 @@ pub enum AnyAnswer {
     Space(Box<Answer>),
 }
 
-/// Evaluates an expression for the results of a scenario, whether they are in planes or in three dimensions.
+/// Evaluates the same expression for both variants of [`AnyAnswer`].
 macro_rules! either {
     ($of:expr, $one:pat => $value:expr) => {
         match $of {
@@ -58,8 +58,8 @@ impl AnyAnswer {
         })
     }
 
-    /// Searches for the smallest changes that would have kept the stack up; returns `None` if no search is made, for
-    /// example because the stack stands.
+    /// Searches for the smallest changes that would have kept the stack standing. Returns `None` if no search is made,
+    /// for example because the stack stands.
     ///
     /// # Errors
     /// When a motion cannot be read.
@@ -70,7 +70,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Sets the changes that would have kept the stack up.
+    /// Sets the changes that would have kept the stack standing.
     pub fn set_remedy(&mut self, found: Option<Remedy>) {
         match self {
             Self::Planes(answer) => answer.decides.summary.remedy = found,
@@ -78,7 +78,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Sets the wall-clock time (s) of the work.
+    /// Sets the wall-clock time (s) of the computation.
     pub fn set_wall_seconds(&mut self, seconds: f64) {
         match self {
             Self::Planes(answer) => answer.decides.summary.run.wall_seconds = Some(seconds),
@@ -86,7 +86,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Repeats the shown run with small changes, and keeps the comparison in the summary.
+    /// Repeats the run that the results show, with small changes, and stores the comparison in the summary.
     ///
     /// # Errors
     /// When a repeat cannot be built or does not stand.
@@ -105,7 +105,7 @@ impl AnyAnswer {
         Ok(())
     }
 
-    /// Returns the comparison of the shown run with its repeats.
+    /// Returns the comparison of the run that the results show with its repeats, made by [`AnyAnswer::verify`].
     pub fn verification(&self) -> Option<&Verification> {
         match self {
             Self::Planes(answer) => answer.decides.summary.verification.as_ref(),
@@ -113,7 +113,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns the summary of the shown run, with the statistics of all variants.
+    /// Returns the summary of the run that the results show, with the statistics of all variants.
     pub fn summary(&self) -> AnySummary {
         match self {
             Self::Planes(answer) => AnySummary::Planar(Box::new(answer.decides.summary.clone())),
@@ -152,7 +152,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns the time (s) at which the shown run ended.
+    /// Returns the time (s) at which the run that the results show ended.
     pub fn end_time(&self) -> f64 {
         match self {
             Self::Planes(answer) => answer.decides.run.end_time,
@@ -160,7 +160,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns all warnings, each once.
+    /// Returns all warnings, without duplicates.
     pub fn warnings(&self) -> Vec<&str> {
         let (own, other) = match self {
             Self::Planes(answer) => {
@@ -173,7 +173,7 @@ impl AnyAnswer {
         own.iter().chain(other).map(String::as_str).collect()
     }
 
-    /// `true` if any part of the work was interrupted.
+    /// Returns `true` if any part of the computation was interrupted.
     pub fn is_stopped(&self) -> bool {
         match self {
             Self::Planes(answer) => answer.is_stopped(),
@@ -184,7 +184,7 @@ impl AnyAnswer {
         }
     }
 
-    /// `true` if the computation of a shown run failed.
+    /// Returns `true` if the computation failed in any of the runs that the results show.
     pub fn is_invalid(&self) -> bool {
         let invalid = |outcome: &Outcome| matches!(outcome, Outcome::Invalid { .. });
         match self {
@@ -218,7 +218,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Renders the shown run into a folder, and returns what was rendered.
+    /// Renders the run that the results show into a folder, and returns what was rendered.
     ///
     /// # Errors
     /// When a file cannot be written.

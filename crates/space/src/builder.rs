@@ -32,7 +32,7 @@ pub(crate) struct Builder<'a> {
     /// Elements that already act while the stack is settled, because it would not stand without them; each with the
     /// description of its device.
     pub(crate) held: Vec<(Element<Spatial>, &'static Words)>,
-    /// Contact pairs of the ground with the bearings of platforms.
+    /// Contact pairs between the ground and the bearings of platforms.
     pub(crate) bearings: Vec<ContactPair>,
     /// Height (m) by which devices under the stack, such as isolators, raise it.
     pub(crate) raised: f64,
@@ -127,8 +127,8 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Adds a rack with its barrels and returns the IDs of the barrels; the middle of the rack's underside is at a
-    /// position (m).
+    /// Adds a rack with its barrels and returns the IDs of the barrels. `place` is the nominal position (m) of the
+    /// middle of the rack's underside.
     fn add_rack(
         &mut self,
         (level, column, row): (u32, u32, u32),
@@ -292,8 +292,8 @@ impl<'a> Builder<'a> {
         list
     }
 
-    /// Returns the number of solids of a body that touch other bodies. The surfaces and node sets of these solids come
-    /// first.
+    /// Returns the number of solids of a body that can touch other bodies. In the lists of the body, the surfaces and
+    /// node sets of these solids come first.
     fn solids(&self, body: BodyId) -> usize {
         // The other surfaces of the ground are dishes, which touch only bearings.
         if body == Stack::GROUND { 1 } else { self.bodies[body].surfaces.len() }

@@ -19,7 +19,7 @@ use crate::run::{Standing, affordable, stand};
 /// ```
 ///
 /// # Errors
-/// As [`run`](crate::run::run).
+/// The same as for [`run`](crate::run::run).
 pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     let scenario = &scenario.with_records(&mut from_disk)?;
     let ground = Ground::of(scenario)?;

@@ -57,8 +57,8 @@ impl Sight {
         }
     }
 
-    /// Returns `true` if this view shows the label of a motion in the direction `heading`. Each motion is labeled in
-    /// exactly one view.
+    /// Returns `true` if this view labels the bodies that leave their seats in the direction `heading`. Each direction
+    /// belongs to exactly one view.
     fn shows(self, heading: Heading) -> bool {
         match self {
             Self::Across => heading.is_across(),
@@ -87,13 +87,13 @@ impl Sight {
 /// Half the assumed thickness (m) of those parts of devices that the flat drawings show as lines.
 pub(crate) const PLATE: f64 = 0.012;
 
-/// Maximum frame rate of a picture (1/s).
+/// Maximum frame rate of a drawing (frames per second).
 const RATE: f64 = 20.0;
 
-/// Resolution of the view directions of bodies in a [`scene`], in steps per right angle.
+/// Number of steps per right angle to which the view directions of bodies in a [`scene`] are rounded.
 const STEPS: f64 = 6.0;
 
-/// Resolution of the view directions of bodies in a [`coarse_scene`], in steps per right angle.
+/// Number of steps per right angle to which the view directions of bodies in a [`coarse_scene`] are rounded.
 const COARSE_STEPS: f64 = 3.0;
 
 /// Returns the drawing of a run in a view direction.
@@ -202,7 +202,7 @@ pub struct Shown<'a> {
     pub body: &'a Body<Spatial>,
     /// Poses in all frames: position (m) and quaternion `w`, `x`, `y`, `z`.
     pub path: Vec<[f64; 7]>,
-    /// Time (s) at which the body leaves its seat.
+    /// Time (s) at which the body leaves its seat; `None` if it does not leave its seat.
     pub leaves_at: Option<f64>,
 }
 
@@ -274,7 +274,7 @@ pub fn together(bodies: &[Shown<'_>], times: &[f64], sight: Sight) -> Scene {
     Scene { bodies: drawn, frames, events, moment, depth: deep, ..Scene::default() }
 }
 
-/// Returns the barrels of the top level, whose paths are drawn.
+/// Returns the indices of the barrels of the top level, whose paths are drawn.
 fn top(run: &Run) -> impl Iterator<Item = usize> {
     let levels = run.stack.levels;
     run.stack
@@ -282,7 +282,7 @@ fn top(run: &Run) -> impl Iterator<Item = usize> {
         .filter(move |body| levels > 0 && run.stack.parts[*body].level == levels)
 }
 
-/// Returns the traces of the top-level barrels (the paths of their centers) in a scene of the run.
+/// Returns the paths of the centers of the top-level barrels, as traces in a scene of the run.
 pub fn traces(run: &Run, scene: &Scene) -> Vec<Trace> {
     let first = scene.bodies.len() - top(run).count();
     let trace = |(at, body): (usize, usize)| Trace {
@@ -403,7 +403,8 @@ fn yard(run: &Run, sight: Sight) -> SceneBody {
     SceneBody::new("", Role::Block, corners.into())
 }
 
-/// Returns two opposite corners of the area that all bodies cover, relative to the ground.
+/// Returns the lower left and upper right corners of a rectangle that contains all bodies in all frames, relative to
+/// the ground.
 fn bounds(run: &Run, sight: Sight) -> [Point; 2] {
     let page = sight.page();
     let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);

@@ -34,8 +34,8 @@ pub fn files(answer: &Answer, resolved: &str, language: Language) -> Vec<(String
     files
 }
 
-/// Writes the selected renderings of the shown run. The animation and the frames are drawn in the view in which the
-/// first body leaves its seat. If no body leaves its seat, they are drawn in the view across the barrels.
+/// Writes the selected renderings of the run that the results show. The animation and the frames are drawn in the view
+/// in which the first body leaves its seat. If no body leaves its seat, they are drawn in the view across the barrels.
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -15,7 +15,7 @@ const CENTER_FREQUENCY: f64 = 5.0 / 7.0;
 /// The wavelet at one scale, sampled in time.
 #[derive(Clone, Debug)]
 pub(super) struct Wavelet {
-    /// Values at the samples, centered, with unit norm.
+    /// Values at the samples, with unit norm; the middle value is at the center of the wavelet.
     values: Vec<f64>,
 }
 

@@ -84,7 +84,7 @@ pub enum TargetSpectrum {
     /// `NCh2745.Of2003` (base isolation): base spectrum with acceleration, velocity and
     /// displacement branches, divided by the damping factor `B_D`.
     NCh2745 {
-        /// Seismic zone, which sets the factor 3/4, 1 or 5/4.
+        /// Seismic zone, which multiplies the spectrum by 3/4, 1 or 5/4.
         zone: ChileanZone,
         /// Soil type.
         soil: NCh2745Soil,
@@ -100,8 +100,8 @@ pub enum TargetSpectrum {
         return_period: f64,
         /// Site subsoil class.
         site: SiteClass,
-        /// Distance to the nearest major fault (km); `None` for no near-fault factor. The factor is
-        /// 1 in any case for `R` up to 0.75.
+        /// Distance to the nearest major fault (km); `None` for no near-fault factor. If `R` is at
+        /// most 0.75, the factor is 1 at any distance.
         fault_distance: Option<f64>,
     },
     /// ICC-ES AC156 with ASCE 7-16: horizontal required response spectrum for shake-table tests, 5

@@ -23,7 +23,9 @@ pub fn held(record: &Record) -> Result<FileRef, MotionError> {
     Ok(file)
 }
 
-/// Reads a file from disk, for [`MotionSpec::with_files`]; `records.zip/a.AT2` is the file `a.AT2` in an archive.
+/// Reads a file from disk, for [`MotionSpec::with_files`].
+///
+/// A path may lead into an archive: `records.zip/a.AT2` is the file `a.AT2` in the archive `records.zip`.
 ///
 /// # Errors
 /// If the file cannot be read, or is larger than [`RECORD_LIMIT`].
@@ -85,7 +87,7 @@ fn how_to_obtain(record: &RecordMotion) -> String {
     record.obtain.as_ref().map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"))
 }
 
-/// Advice for the file of a vertical component.
+/// Advice at the end of the error message if the separate file of the vertical component cannot be read.
 pub(super) const OTHER_VERTICAL: &str = "; correct motion.vertical";
 
 /// Returns the reader options that a scenario specifies.

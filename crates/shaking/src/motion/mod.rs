@@ -52,7 +52,7 @@ pub struct RecordMotion {
     pub time_step: Option<f64>,
     /// Acceleration (m/s²) of one file unit, for files that do not state their unit.
     pub unit: Option<f64>,
-    /// Counts per m/s² for files that contain counts (s²/m).
+    /// Sensitivity (counts per m/s²) for files that contain counts.
     pub sensitivity: Option<f64>,
     /// Signal processing.
     pub processing: Processing,
@@ -116,7 +116,7 @@ pub struct Sine {
 /// Form of a pulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PulseKind {
-    /// Second derivative of a Gaussian in acceleration.
+    /// Acceleration in the form of the second derivative of a Gaussian.
     Ricker,
     /// Acceleration in the form of half a sine wave.
     HalfSine,
@@ -188,11 +188,11 @@ pub enum Scale {
     Pga(f64),
     /// The motion is scaled to this peak horizontal velocity (m/s).
     Pgv(f64),
-    /// The motion is scaled so that an intensity measure reaches a value; the measure must grow with the motion.
+    /// The motion is scaled so that an intensity measure reaches a value. The measure must grow with the amplitude.
     Measure {
         /// The measure.
         measure: IntensityMeasure,
-        /// Value of the measure to reach (SI units).
+        /// Target value of the measure (SI units).
         value: f64,
         /// Components from which the measure is computed.
         of: MeasuredOn,

@@ -66,12 +66,12 @@ impl Builder<'_> {
         self.bodies[body].pose.orientation.matrix()
     }
 
-    /// Transforms a position (m) in the stack to the frame of a body.
+    /// Transforms a position (m) from the frame of the stack to the frame of a body.
     fn within(&self, body: BodyId, place: Vec3) -> Vec3 {
         self.turned(body).unapply(place - self.bodies[body].pose.position)
     }
 
-    /// Adds a line to the drawing of a body; the line runs through positions (m) in the stack.
+    /// Adds a polyline to the drawing of a body. The vertices (m) are in the frame of the stack.
     fn draw(&mut self, body: BodyId, line: &[Vec3]) {
         let line = line.iter().map(|place| self.within(body, *place)).collect();
         self.parts[body].lines.push(line);
@@ -86,8 +86,8 @@ impl Builder<'_> {
     /// Returns the names and positions of four points: left and right at `±across` (m), and near and far at `±along`
     /// (m).
     ///
-    /// In a mirrored stack the right point comes before the left point, so that the order of summation is mirrored,
-    /// too.
+    /// In a mirrored stack the right point comes before the left point, so that the forces at the points are summed in
+    /// mirrored order, too.
     fn sides(&self, across: f64, along: f64) -> [(&'static str, Vec3); 4] {
         let [left, right] =
             [("left", -across), ("right", across)].map(|(side, x)| (side, Vec3::new(x, 0.0, 0.0)));

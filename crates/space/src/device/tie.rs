@@ -1,6 +1,6 @@
-//! Ties of three-dimensional stacks, from the middles of the four sides of a rack. The ties on the left and right sides
-//! are those of the plane model across the barrels. The ties on the near and far sides are those of the plane model
-//! along the barrels, in which the near side is on the left.
+//! Ties of three-dimensional stacks. A tie joins the middle of one of the four sides of a rack to a neighboring rack, a
+//! wall or the ceiling. The ties on the left and right sides are those of the plane model across the barrels. The ties
+//! on the near and far sides are those of the plane model along the barrels, in which the near side is on the left.
 
 use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Anchor, AnchorTies, Side, lowest};
@@ -10,7 +10,7 @@ use super::Loose;
 use crate::builder::Builder;
 use crate::stack::Stack;
 
-/// A side of a rack in a stack that is not mirrored.
+/// A side of a rack. In a mirrored stack, the left side is on the right, and the right side is on the left.
 struct End {
     name: &'static str,
     on: Side,

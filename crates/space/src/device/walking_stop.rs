@@ -1,9 +1,9 @@
 //! Walking stops of three-dimensional stacks, which keep racks from walking on the barrels below.
 //!
 //! A hook acts along the axis of its barrel, at the height of the rack; the barrel may turn under the hook. The hook
-//! disengages as soon as the distance between the rack and the axis of the barrel has grown by the height of the lip
-//! since rest. A saddle acts across the barrel, at any position of the rack along the barrel. It disengages as soon as
-//! the rack has risen by the height of the lip.
+//! disengages as soon as the distance between the rack and the axis of the barrel exceeds its value at rest by the
+//! height of the lip. A saddle acts across the barrel, at any position of the rack along the barrel. It disengages as
+//! soon as the rack has risen by the height of the lip.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Holds, WalkingStops, lowest};

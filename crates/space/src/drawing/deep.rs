@@ -1,4 +1,4 @@
-//! Three-dimensional scene of a run. The reader of a page can rotate the scene.
+//! Three-dimensional scene of a run, which can be rotated on the HTML page.
 
 use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{Body, Element, Solid, Spatial, Vec3};
@@ -13,7 +13,8 @@ use crate::run::Run;
 /// Number of intervals into which the profile of a barrel is divided.
 const PARTS: u32 = 12;
 
-/// Returns the three-dimensional scene of a run in the given frames, with the events of all views.
+/// Returns the three-dimensional scene of a run in the given frames, with the events of all flat views: losses of
+/// seat, falls, and failures of devices.
 pub(super) fn depth(run: &Run, frames: &[usize]) -> Depth {
     let bodies = run.stack.parts.iter().zip(run.stack.model.bodies());
     let own: Vec<usize> = (0..run.stack.parts.len()).collect();
@@ -70,8 +71,8 @@ pub(super) fn of_bodies<'a>(
 }
 
 /// Returns, for each of the given frames, the list of contact forces: the point (m) and the components (N) of each
-/// force. A contact pair keeps its place in the lists while it touches; at a place without a contact pair, the force is
-/// zero.
+/// force. A contact pair keeps its index in the lists as long as it is in contact. At an index without a contact pair,
+/// the force is zero.
 fn forces(run: &Run, frames: &[usize]) -> Vec<Vec<[Point3; 2]>> {
     let mut places: Vec<Option<usize>> = Vec::new();
     let list = |frame: &usize| {
