@@ -72,15 +72,15 @@ pub struct Fate {
     pub drop: f64,
     /// Largest force (N) on the body after its fall.
     pub fall_force: f64,
-    /// Displacement (m) from the position at rest, relative to the ground.
+    /// Displacement (m) from the position at rest, relative to the ground, in the last observed state.
     pub moved: Vec3,
-    /// Displacement (m) at the time of the collapse, or at the end of the run if there is no collapse.
+    /// The same displacement (m) at the time of the collapse, or at the end of the run if there is no collapse.
     pub moved_at_collapse: Vec3,
-    /// Displacement (m) across and along the barrels at the end of the run, relative to the supports and averaged over
-    /// the supports.
+    /// Mean slip (m) across and along the barrels at the end of the run: the displacement relative to each support,
+    /// averaged over the supports.
     pub residual_slip: [f64; 2],
-    /// Largest displacements (m) across and along the barrels before the collapse, relative to the supports and
-    /// averaged over the supports. The two maxima may occur at different times.
+    /// Largest magnitude (m) of the mean slip across and along the barrels before the collapse. The two maxima may
+    /// occur at different times.
     pub peak_slip: [f64; 2],
     /// Largest rise (m) above the position at rest before the collapse.
     pub peak_uplift: f64,
@@ -95,14 +95,15 @@ pub struct Fate {
 pub struct PeakMotion {
     /// Largest displacement (m) relative to the ground.
     pub displacement: f64,
-    /// Largest displacement (m) relative to the supports, averaged over the supports.
+    /// Largest magnitude (m) of the mean slip. The mean slip is the displacement relative to each support, averaged
+    /// over the supports.
     pub slip: f64,
     /// Largest tilt (rad) of a rack from its orientation at rest.
     pub tilt: f64,
 }
 
 impl PeakMotion {
-    /// Returns, for the displacement, the slip and the tilt, the larger of the maxima in two spans of time.
+    /// Returns the larger displacement, the larger slip and the larger tilt of the two.
     #[must_use]
     pub fn or_larger(mut self, other: Self) -> Self {
         self.raise(other.displacement, other.slip, other.tilt);
@@ -121,11 +122,11 @@ impl PeakMotion {
 pub struct Fates {
     stack: Arc<Stack>,
     thresholds: Thresholds,
-    /// Rotations of all bodies at rest.
+    /// For every body, its rotation when the stack is at rest.
     upright: Vec<Rotation3>,
     /// For every body, the direction in the body frame that points up at rest.
     upward: Vec<Vec3>,
-    /// Rotations of all bodies in the current state.
+    /// For every body, its rotation in the current state.
     turned: Vec<Rotation3>,
     all: Vec<Fate>,
     /// Time (s) of the first loss of seat, and the body that lost its seat.
@@ -179,7 +180,7 @@ impl Fates {
         self.all
     }
 
-    /// Updates the rotations of the bodies.
+    /// Sets the current rotations of all bodies from their poses.
     fn turn(&mut self, poses: &[Pose<Spatial>]) {
         for (turned, pose) in self.turned.iter_mut().zip(poses) {
             *turned = pose.orientation.matrix();
@@ -287,10 +288,11 @@ impl Fates {
         self.turned[i].apply(self.upward[i])
     }
 
-    /// Computes the displacements (m) of a body relative to its supports, along the axes at rest.
+    /// Computes the displacements (m) of a body relative to its supports, and stores them in `slips`.
     ///
-    /// A barrel has one displacement, in the frame of its rack. A rack has one displacement for each barrel below, in
-    /// the frame of the rack. Any other body has one displacement, relative to the ground.
+    /// A body with a carrier, such as a barrel on a rack, has one displacement, in the frame of the carrier. A rack on
+    /// barrels has one displacement for each barrel below, in the frame of the rack. These frames rotate with their
+    /// bodies; at rest, their axes are those of the stack. Any other body has one displacement, relative to the ground.
     fn slips(&self, poses: &[Pose<Spatial>], i: BodyId, slips: &mut Vec<Vec3>) {
         slips.clear();
         let part = &self.stack.parts[i];

@@ -5,7 +5,7 @@ use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
 use barrelstack::scenario::{Basis, Fill, RackKind, Scenario, SeatContact, StackSpec};
 use barrelstack_dynamics::solid::Barrel;
 
-/// Returns the shape of the barrels of a stack.
+/// Checks that all features of a stack are supported in three dimensions, and returns the shape of its barrels.
 ///
 /// # Errors
 /// If the stack has a feature that is not supported in three dimensions.

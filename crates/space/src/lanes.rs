@@ -17,7 +17,7 @@ use crate::ground::Ground;
 use crate::simulation::{Prepared, Watch};
 use crate::variants::Case;
 
-/// Number of steps between two calls of `stop`.
+/// Number of steps after which a batch checks whether it has to stop.
 const PATIENCE: u32 = 64;
 
 /// Smallest number of cases that run in lanes. Fewer cases would take longer in lanes than one after the other: with

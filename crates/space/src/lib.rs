@@ -1,4 +1,4 @@
-//! Three-dimensional stacks of barrels and free scenes (individual bodies), shaken by all three components of a motion.
+//! Three-dimensional stacks of barrels and free scenes (individual bodies), in a ground motion with three components.
 //!
 //! ```text
 //! Scenario ─ stack::assemble ─▶ Stack { Model, parts }
@@ -9,7 +9,7 @@
 //!
 //! `x` is across the barrels, `y` along the barrels, and `z` up; columns are counted along `x`, rows along `y`. A
 //! three-dimensional run differs from a run in a plane in geometry only: the contact laws, time steps, thresholds and
-//! texts are the same.
+//! messages are the same.
 
 // Results are bit-identical on every machine, so the transcendental functions of the platform are disallowed
 // (`clippy.toml`).
@@ -53,7 +53,7 @@ pub use stack::Stack;
 pub use summary::Summary;
 pub use variants::{Answer, answer};
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -28,13 +28,13 @@ pub struct Part {
     pub size: f64,
     /// Volume (m³) of the wine in a barrel; 0 for all other bodies.
     pub wine: f64,
-    /// Seats of the tubes of a rack.
+    /// Barrels that the tubes of a rack carry, and barrels on which the tubes lie.
     pub(crate) seats: Seats,
     /// Lines (m), in the body frame, that show the parts of devices that are fixed to the body.
     pub(crate) lines: Vec<Vec<Vec3>>,
 }
 
-/// Seats of the tubes of a rack.
+/// Barrels that the tubes of a rack carry, and barrels on which the tubes lie.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Seats {
     /// For every tube, the barrel that the tube carries, if any.

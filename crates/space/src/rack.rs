@@ -59,8 +59,9 @@ impl Heights {
     }
 }
 
-/// Returns the tubes of a rack, with chocks last; `None` if its cradle is not a pair of supports. `apart` is the
-/// distance (m) between barrels that lie one behind the other.
+/// Returns the tubes of a rack, with chocks last; `None` if its cradle is not a pair of supports.
+///
+/// `apart` is the distance (m) between the centers of barrels that lie end to end.
 pub(crate) fn tubes(
     rack: &Rack,
     barrel: &Barrel,
@@ -116,6 +117,8 @@ pub(crate) fn tubes(
 }
 
 /// Returns the distance (m), along the barrels, from the middle of a rack to its outermost beams.
+///
+/// `apart` is the distance (m) between the centers of barrels that lie end to end.
 pub(crate) fn reach_along(rack: &Rack, apart: f64) -> f64 {
     0.5 * f64::from(rack.barrels_deep - 1) * apart + rack.rail_half_spacing
 }

@@ -135,7 +135,7 @@ pub fn document(answer: &Answer) -> Document {
     }
 }
 
-/// Returns the table of the numbers of the run that is shown.
+/// Returns the table of the results of the run.
 fn numbers(run: &Run, summary: &Summary) -> Block {
     let caption = if run.stack.is_free() {
         "Results of the run that is shown."
@@ -148,7 +148,7 @@ fn numbers(run: &Run, summary: &Summary) -> Block {
     Block::Table(numbers)
 }
 
-/// Returns the section for engineers, which is closed until the reader opens it.
+/// Returns the section for engineers, which is collapsed by default.
 fn for_engineers(answer: &Answer) -> Block {
     let mut blocks = Vec::new();
     if let Some(balance) = &answer.summary.energy {
@@ -163,8 +163,8 @@ fn for_engineers(answer: &Answer) -> Block {
     Block::details("Energies, inputs and limits", blocks)
 }
 
-/// Returns the sections on all variants: their statistics, the constants that decide the outcome, and the changes that
-/// would have kept the stack up.
+/// Returns the report sections about the variants: their statistics, the constants that decide the outcome, and the
+/// changes that would have kept the stack up.
 fn of_variants(summary: &Summary) -> Vec<Block> {
     let heading = |text: &str| Block::heading(2, text);
     let mut blocks = Vec::new();

@@ -18,18 +18,18 @@ pub type Motions<'a> = (&'a [Pose<Spatial>], &'a [Twist<Spatial>]);
 #[derive(Clone, Debug)]
 pub struct Rest {
     stack: Arc<Stack>,
-    /// Times (s) from which the ground is still (`still_from`) and nearly still (`calm_from`); infinite if the run
-    /// always lasts for its full duration.
+    /// Times (s) from which a standing stack (`still_from`) and a collapsed stack (`calm_from`) may be at rest. Both
+    /// are infinite if the run must last for its full duration.
     still_from: f64,
     calm_from: f64,
-    /// Kinetic energy per mass (m²/s²) below which a body counts as at rest.
+    /// Kinetic energy per unit mass (m²/s²) below which a body counts as at rest.
     slow: f64,
     /// Last time (s) at which a body was in motion.
     moved: f64,
 }
 
 impl Rest {
-    /// Creates the detector for the stack of a scenario on a ground.
+    /// Creates the detector for the stack of a scenario under a ground motion.
     pub fn new(scenario: &Scenario, stack: Arc<Stack>, ground: &Ground) -> Self {
         let gravity = scenario.run.gravity;
         let calm = || ground.calm_from(gravity * calm(stack.model.interfaces()));
@@ -58,7 +58,7 @@ impl Rest {
         (1..self.stack.parts.len()).filter(move |body| self.is_fast(bodies, *body))
     }
 
-    /// Restarts the count of the time at rest at a time (s), for a stack that is set in motion again.
+    /// Sets the last time at which a body was in motion to `time` (s), for a stack that is set in motion again.
     pub fn wake(&mut self, time: f64) {
         self.moved = time;
     }

@@ -203,7 +203,7 @@ pub fn run_on(
 }
 
 impl Run {
-    /// Returns every element of the devices, with its outcome and the description of its device.
+    /// Returns all elements of the devices. Each comes with the description of its device and with its outcome.
     pub(crate) fn devices(
         &self,
     ) -> impl Iterator<Item = ((&Element<Spatial>, &'static Words), &ElementFate)> + Clone {

@@ -8,7 +8,7 @@ use barrelstack_dynamics::{BodyId, Scratch, Spatial, Vec2, Vec3};
 
 use crate::stack::Stack;
 
-/// Normal force on one contact element.
+/// Normal force on one contact element: its value at rest and its maxima.
 #[derive(Clone, Copy, Debug, Default)]
 struct Press {
     /// Force at rest (N).
@@ -42,7 +42,7 @@ pub struct Seats {
     pairs: Vec<Pair>,
 }
 
-/// Bookkeeping of a contact pair.
+/// Bodies of a contact pair, with the indices of its first contact element and of its joint.
 #[derive(Clone, Debug)]
 struct Pair {
     bodies: [BodyId; 2],

@@ -61,12 +61,11 @@ pub(crate) struct Fixed {
     pub(crate) stack: Arc<Stack>,
     settled: Option<Settled>,
     pub(crate) settings: barrelstack_dynamics::Simulation,
-    /// Number of evaluations, and number of contact elements that were tested, before the run (while the stack was
-    /// settled).
+    /// Number of evaluations and number of tested contact elements before the run, while the stack settled.
     before: (u64, u64),
 }
 
-/// A stack at rest and the observer of its run, before the ground moves.
+/// A run that is ready to start, with its stack at rest and its observers.
 #[derive(Debug)]
 pub(crate) struct Prepared {
     pub(crate) fixed: Arc<Fixed>,
@@ -75,7 +74,7 @@ pub(crate) struct Prepared {
     pub(crate) watch: Watch,
 }
 
-/// Combined observer of a run.
+/// Observers of a run, which record outcomes, seat forces and frames, and determine when the run ends.
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
     fates: Fates,
@@ -91,12 +90,12 @@ pub(crate) struct Watch {
 }
 
 /// Maximum number of steps between two calls of the observer. The number of steps is limited in addition to the
-/// simulated time, because a step with many bodies takes long.
+/// simulated time, because a step with many bodies takes a long time.
 const PATIENCE: u32 = 16;
 
 impl Prepared {
-    /// Builds the three-dimensional stack of a scenario, settles the stack, and creates the observer of its run under a
-    /// given ground motion.
+    /// Builds the three-dimensional stack of a scenario, settles the stack, and creates the observers of its run under
+    /// a given ground motion.
     ///
     /// # Errors
     /// As [`Simulation::new`].
@@ -126,7 +125,7 @@ impl Prepared {
         Ok(Self { fixed, state, scratch, watch })
     }
 
-    /// Starts the run: from now on the ground moves.
+    /// Starts the run under the ground motion.
     pub(crate) fn start(self) -> Simulation {
         let Self { fixed, mut state, mut scratch, mut watch } = self;
         let Fixed { ground, stack, settings, .. } = &*fixed;
@@ -136,8 +135,8 @@ impl Prepared {
         Simulation { fixed, state, scratch, stepper, watch, failure: None }
     }
 
-    /// Returns `true` if the run can share its steps with other runs, that is, if the method has fixed time steps and
-    /// the run cannot end before its first step.
+    /// Returns `true` if the run can advance in a lane, together with other runs. This requires that the method has
+    /// fixed time steps, and that the run cannot end before its first step.
     pub(crate) fn can_share_steps(&self) -> bool {
         !self.fixed.settings.method.is_adaptive() && self.watch.after_collapse > 0.0
     }
@@ -371,7 +370,7 @@ impl Watch {
         self.seats.observe((lane, own.time), standing, scratch);
     }
 
-    /// Returns the result of a run that ended in a state.
+    /// Returns the result of a run, given its final state.
     pub(crate) fn conclude(
         self,
         fixed: Arc<Fixed>,

@@ -133,11 +133,11 @@ pub(crate) fn in_plane(scenario: &Scenario, view: View) -> Scenario {
     plane
 }
 
-/// Substepping for fast contacts. They occur in three dimensions, where barrels hit the floor with their rims and light
-/// racks bounce on their own barrels.
+/// Substepping rules for fast contacts. Such contacts occur in three dimensions when barrels hit the floor with their
+/// rims, or when light racks bounce on their own barrels.
 const FAST: Fast<f64> = Fast { whole_step_way: 5e-4, hard: 1.0 };
 
-/// Time stepping of a stack, and reach of its racks; both are taken from its plane models.
+/// Time step and substepping of a stack, and reach of its racks. All values are derived from its plane models.
 struct Pace {
     /// The time step (s).
     step: f64,

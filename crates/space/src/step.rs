@@ -11,7 +11,8 @@ use barrelstack_dynamics::{
 /// Time step as a fraction of the critical time step, as in the plane models.
 const SHARE: f64 = 0.3;
 
-/// Time step as a fraction of the time in which dampers stop a body, as in the plane models.
+/// Time step as a fraction of the time constant with which dampers slow a body (its effective mass divided by the
+/// damping), as in the plane models.
 const DAMPING_SHARE: f64 = 0.33;
 
 /// Penetration (m) at which nonlinear contact laws are linearized, as in the plane models.
@@ -78,14 +79,17 @@ fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f6
     most
 }
 
-/// Returns a ratio (1/kg): twice the number of contacts of a node set that can bear at the same time, divided by the
-/// effective mass of the body at a contact.
+/// Returns twice the number of contacts of a node set that can carry load at the same time, divided by the effective
+/// mass of the body at a contact (1/kg).
 fn bearing(body: &Body<Spatial>, nodes: &Nodes<Spatial>) -> f64 {
     2.0 * contacts(nodes) * (1.0 / body.mass + turned(body))
 }
 
-/// Returns three values for contacts of free bodies with a fixed body: the longest time step (s) outside of impacts,
-/// the longest time step (s) during impacts, and the penetration (m) up to which the first of these steps suffices.
+/// Returns the time steps for contacts between free bodies and a fixed body, with the contact law `law`.
+///
+/// The result contains the longest time step (s) outside of impacts, the longest time step (s) during impacts, and the
+/// largest penetration (m) at which the time step outside of impacts is short enough. Bodies that are not free are
+/// ignored.
 pub fn steps_at_fixed<'a>(
     bodies: impl Iterator<Item = &'a Body<Spatial>>,
     law: &Interface<Spatial>,
@@ -108,7 +112,7 @@ pub fn steps_at_fixed<'a>(
     [step, step, f64::INFINITY]
 }
 
-/// Returns the number of contacts of a solid that can bear at the same time.
+/// Returns the number of contacts of a node set that can carry load at the same time.
 fn contacts(nodes: &Nodes<Spatial>) -> f64 {
     match nodes {
         Nodes::Whole(whole) => match whole.hull {

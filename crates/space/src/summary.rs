@@ -17,7 +17,7 @@ use crate::fate::Heading;
 use crate::run::Run;
 use crate::variants::{Case, demands};
 
-/// Summarizes a run. `stated` is the scenario as stated; the run may be a variant of it.
+/// Summarizes a run of the scenario `stated` or of one of its variants.
 pub fn of(run: &Run, stated: &Scenario) -> Summary {
     let sound = !matches!(run.outcome, Outcome::Invalid { .. });
     let motion = |ground: &barrelstack::Ground| ground.motion.as_ref().map(MotionSummary::of);

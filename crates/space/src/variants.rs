@@ -43,9 +43,9 @@ pub struct Case {
 /// Result of a three-dimensional scenario.
 #[derive(Clone, Debug)]
 pub struct Answer {
-    /// The scenario as stated, with its records in memory.
+    /// The scenario as stated, with the files of its ground-motion records loaded.
     pub scenario: Scenario,
-    /// The run that is shown.
+    /// The run that is shown in detail: that of the scenario as stated, or of one of its variants.
     pub run: Run,
     /// Summary of the run, with the statistics of all variants.
     pub summary: Summary,
@@ -266,7 +266,8 @@ fn run_all_of<T: Sync>(
 /// Largest number of cases that a thread takes at once; with this number, its lanes are full for most of the time.
 const BATCH: usize = 32;
 
-/// Runs cases on one core: those that can share their steps in lanes, and all others one after the other.
+/// Runs cases on one core. If `in_lanes` is `true`, the cases that can advance together run in lanes; all others run
+/// one after the other.
 fn run_chunk<T>(
     in_lanes: bool,
     items: &[T],
@@ -301,7 +302,7 @@ fn run_chunk<T>(
     }
 }
 
-/// A three-dimensional stack to which a change is applied as a possible remedy, and its variants.
+/// Trial of a possible remedy: a changed three-dimensional stack with its variants and its ground motion.
 struct InSpace {
     plane: Plane,
     ground: Ground,
@@ -343,18 +344,18 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
     remedy_by(&answer.scenario, as_it_is, &prepare, observer)
 }
 
-/// Returns the variants of a three-dimensional scenario, with its records in memory.
+/// Loads the ground-motion records of a three-dimensional scenario, and returns the scenario with its variants.
 fn plane(scenario: &Scenario) -> Result<Plane, GroundError> {
     let mut all = planes(scenario)?;
     Ok(all.swap_remove(0))
 }
 
-/// Runs all variants of a three-dimensional scenario, and then the run that is shown.
+/// Runs all variants of a three-dimensional scenario, and then the run that is shown in detail (see `choice`).
 ///
 /// The observer may stop the work; the results until then are returned.
 ///
 /// # Errors
-/// As [`run_all`], and if the run that is shown cannot be built or does not stand.
+/// As [`run_all`], and if the stack of the selected run cannot be built or does not stand.
 pub fn answer(
     scenario: &Scenario,
     choice: RunChoice,
@@ -363,8 +364,8 @@ pub fn answer(
     answered(scenario, choice, None, observer)
 }
 
-/// Builds an [`answer`]. `known` contains the cases of the scenario as stated and of all its variants, if these were
-/// already run.
+/// Returns the same result as [`answer`]. `known` contains the cases of the scenario as stated and of all its variants,
+/// if these were already run.
 pub(crate) fn answered(
     scenario: &Scenario,
     choice: RunChoice,

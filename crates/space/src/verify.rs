@@ -1,4 +1,5 @@
-//! Repeats of a three-dimensional run with small changes, which show how far its result can be trusted.
+//! Implementation of [`Repeatable`] for three-dimensional runs. Reruns with small changes show how reliable a result
+//! is.
 
 use std::ops::ControlFlow;
 

@@ -1,4 +1,4 @@
-//! Sentences about a three-dimensional stack: the sentences about a plane model, with the addition of directions.
+//! Sentences about a three-dimensional run: the same as about a run of a plane model, but with directions.
 
 use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::{CollapseMode, Outcome};

@@ -172,7 +172,7 @@ impl<'a> Builder<'a> {
         (name, mass, offset)
     }
 
-    /// Adds the barrels of a rack, all of the same shape and size (m), and returns their IDs.
+    /// Adds the barrels of a rack, all of the same shape and characteristic size (m), and returns their IDs.
     ///
     /// `places` are the positions of the barrels along the rack (m), relative to `origin` (m); `column` is the column
     /// of the rack.

@@ -24,7 +24,7 @@ const DAMPING_RATIO: f64 = 0.01;
 
 /// Natural angular frequency (rad/s) of the sloshing mass on the spring that supports it; the frequency is 15 Hz.
 ///
-/// This is far above the sloshing frequency, but the support is not stiffer than a seat.
+/// This frequency is far above the sloshing frequency. It is low enough that the support is not stiffer than a seat.
 const HOLDING: f64 = 30.0 * PI;
 
 /// Damping ratio of the sloshing mass on its support. The value is an assumption: wine that strikes the wall does not

@@ -1,4 +1,4 @@
-//! Assembly of a free scene: arbitrary planar bodies on a ground.
+//! Assembly of a free scene: arbitrary planar bodies on the ground.
 
 use std::collections::HashMap;
 use std::mem::discriminant;
@@ -119,7 +119,7 @@ fn element(
     element
 }
 
-/// The group of a body, and the boundaries at which other bodies can touch it.
+/// Group and boundaries of a body. Bodies of the same group touch only through interfaces that act within groups.
 struct Outer<'a> {
     group: Option<&'a str>,
     boundaries: Vec<Boundary<'a>>,
@@ -137,13 +137,14 @@ struct Boundary<'a> {
 }
 
 impl Boundary<'_> {
-    /// Returns the node set of the part that has this surface; `None` if the nodes are at individually chosen points.
+    /// Returns the index of the node set on the same part as a surface; `None` if the nodes are at individually chosen
+    /// points.
     fn nodes_of(&self, surface: usize) -> Option<usize> {
         let at = self.nodes.start + surface - self.surfaces.start;
         (self.nodes.len() == self.surfaces.len()).then_some(at)
     }
 
-    /// Returns the surface of the part that has this node set.
+    /// Returns the index of the surface on the same part as a node set.
     fn surface_of(&self, nodes: usize) -> usize {
         self.surfaces.start + nodes - self.nodes.start
     }

@@ -35,7 +35,7 @@ pub(super) fn interface<S: Space<Real = f64>>(
     Interface { name: name.to_owned(), normal, stop: None, rolling: None, friction, basis }
 }
 
-/// Returns the normal law of several equal elements that share one penetration.
+/// Returns the normal law of several identical elements in parallel, which all have the same penetration.
 fn together(law: NormalLaw, elements: f64) -> NormalLaw {
     match law {
         NormalLaw::SpeedGap { stiffness, damping } => {

@@ -200,8 +200,10 @@ fn frame(rack: &Rack, posts: &Posts, outer: f64, level: u32) -> Result<Vec<Solid
     Ok(solids.into_iter().map(|solid| Solid { out_of_plane: true, ..solid }).collect())
 }
 
-/// Returns the nodes of the lower or upper face of a rail that is centered at `x` (m) and has this face at height `z`
-/// (m): a row along the flat part, and one node in the middle of each rounded end.
+/// Returns the nodes of the lower or upper face of a rail: their positions (m) and tributary lengths (m).
+///
+/// A row of nodes lies along the flat part, and one node in the middle of each rounded end. The rail is centered at `x`
+/// (m), and the face is at height `z` (m). `outward` is 1 for the upper face, and −1 for the lower face.
 fn noded_face(rack: &Rack, x: f64, z: f64, outward: f64) -> Vec<(Vec2, f64)> {
     let corner = corner_of(rack);
     let half = 0.5 * rack.rail_width - corner;
@@ -223,7 +225,7 @@ fn corner_of(rack: &Rack) -> f64 {
 
 /// Position of a barrel relative to its two rails, which may be inclined.
 struct Seating {
-    /// Height (m) of the middle of the barrel above the mean height of the tops of its rails.
+    /// Height (m) of the center of the barrel above the mean height of the tops of its rails.
     seat: f64,
     /// Height (m) of the right rail above the mean height of both rails; the left rail is below the mean by the same
     /// amount.
@@ -241,7 +243,7 @@ impl Seating {
         let across = rack.rail_half_spacing - 0.5 * rack.rail_width + corner;
         let apart = profile.stave_radius + corner;
         let (sin, cos) = math::sin_cos(rack.incline);
-        // From the middle of the barrel to the center of curvature of its staves.
+        // Distance from the center of the barrel to the center of curvature of its staves.
         let up = profile.stave_radius - profile.bilge_radius;
         if up * sin.abs() >= across {
             return Err(AssembleError::Stack(format!(

@@ -82,7 +82,8 @@ impl Pairs<'_> {
     /// Adds the contact pairs of two solids, without nodes along their faces: one pair if a solid is a circle,
     /// otherwise two pairs, which test the corners and arcs of each solid against the other.
     ///
-    /// `counts` states which contacts count if the first solid is the contactor, and if the second is.
+    /// `counts` selects the contacts that count: its first element applies to the pair in which the first solid is the
+    /// contactor, and its second element to the pair in which the second solid is the contactor.
     fn exact(
         &mut self,
         (a, solid_a): (BodyId, usize),
@@ -103,7 +104,7 @@ impl Pairs<'_> {
 
     /// Returns the underside with which a solid stands on a floor; `None` if the contact uses no row of nodes.
     ///
-    /// If constants are stated per seat, a tube from end to end of a rack has one seat at each end instead of a row of
+    /// If constants are stated per seat, a tube that spans the whole rack has one seat at each end instead of a row of
     /// nodes.
     fn row_on_floor(&self, touch: &Touch) -> Option<NodedFace> {
         let per_seat = self.builder.spec.interfaces.rack_ground.basis == Basis::Seat;
