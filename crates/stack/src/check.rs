@@ -1,4 +1,4 @@
-//! Check of a scenario without shaking: whether the scenario is sound, and whether its stack stands.
+//! Check of a scenario without shaking: whether the scenario is valid, and whether its stack stands.
 
 use barrelstack_columns::described;
 use barrelstack_dynamics::Settled;

@@ -20,7 +20,7 @@ pub enum Span {
 pub struct Demand {
     /// Key in files.
     pub name: &'static str,
-    /// Description of the demand in a sentence.
+    /// Description of the demand.
     pub meaning: &'static str,
     /// Displayed label.
     pub label: &'static str,
@@ -55,13 +55,13 @@ macro_rules! demands {
         $(#[doc = $doc:literal])+
         $name:ident $unit:literal: $label:literal, $factor:literal $shown:literal $decimals:literal, $of:expr;
     )*) => {
-        /// Demands on the stack in a [`Span`] of its run; all null if the run is invalid.
+        /// Demands on the stack in a [`Span`] of its run; all `None` if the run is invalid.
         #[derive(Clone, Debug, Default, Serialize)]
         pub struct Demands {
             $($(#[doc = $doc])+ pub $name: Option<f64>,)*
         }
 
-        /// All demands, in reading order.
+        /// All demands, in the order of display.
         pub static DEMANDS: &[Demand] = &[$(Demand {
             name: stringify!($name),
             meaning: concat!($($doc),+),

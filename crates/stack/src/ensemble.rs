@@ -34,7 +34,7 @@ pub use work::{Share, Stage, Work};
 
 /// Version of the results of an ensemble.
 ///
-/// The version is raised with every change of the program that may alter a bit of any result, so that results of
+/// The version is raised with every change of the program that may change any bit of any result, so that results of
 /// different versions are never combined.
 pub const VERSION: u32 = 13;
 
@@ -68,7 +68,7 @@ pub struct Audience<'a> {
 pub struct Ensemble {
     /// The cases; cases with the same stack or motion share the data of that stack or motion.
     pub cases: Vec<Prepared>,
-    /// Vector unit to use; by default the widest of the machine. Results do not depend on this choice.
+    /// Vector unit to use; by default the widest that the machine has. Results do not depend on this choice.
     pub lanes: Option<Width>,
 }
 
@@ -189,7 +189,7 @@ fn simulate_as_far(
 }
 
 impl Stack<'_> {
-    /// Returns the settled stack, or the reason why the stack does not stand.
+    /// Returns the stack as it stands before the shaking, or the reason why it cannot be shaken.
     fn found(&self) -> Result<&Standing, String> {
         self.standing.as_ref().map_err(ToString::to_string)
     }

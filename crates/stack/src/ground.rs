@@ -32,8 +32,9 @@ described! {
 }
 
 impl Scenario {
-    /// Reads or generates the ground motion of the scenario, and scales it. The warnings of the result include those
-    /// about the text of the scenario.
+    /// Reads or generates the ground motion of the scenario, and scales it.
+    ///
+    /// The warnings of the result include the [warnings](Self::warnings) of the scenario.
     ///
     /// # Errors
     /// If a record cannot be read, lacks the requested component, or cannot be scaled.
@@ -105,8 +106,9 @@ impl Scenario {
         Ok(self.with_record_file(&held(record)?))
     }
 
-    /// Returns the scenario with a file in memory ([`held`]) in place of its own motion, so that many scenarios can
-    /// share one file.
+    /// Returns the scenario with the record in `file` in place of its own motion.
+    ///
+    /// Many scenarios can share one file in memory; see [`held`].
     #[must_use]
     pub fn with_record_file(&self, file: &FileRef) -> Self {
         let mut scenario = self.clone();

@@ -43,7 +43,7 @@ pub use run::{Progress, Run, RunFailure};
 pub use scenario::Scenario;
 pub use simulation::Simulation;
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run with the doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

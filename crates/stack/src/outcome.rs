@@ -14,7 +14,7 @@ pub enum CollapseMode {
     /// A rack walks along the barrels below until its rail passes the ends of these barrels. Among planar models, only
     /// the model along the barrels can show this mode.
     RackSliding,
-    /// The whole stack overturns about its foot.
+    /// The whole stack overturns about an edge of its base.
     Overturning,
     /// The stack falls under its own weight before it is shaken.
     Gravity,
@@ -56,7 +56,7 @@ pub enum Outcome {
         time: f64,
         /// Name of the first body that left its seat.
         first: String,
-        /// Lowest level whose seat or support was lost.
+        /// Lowest level that collapsed, which is the level of the body `first`.
         from_level: u32,
         /// Highest level that collapsed together with `from_level`.
         to_level: u32,
@@ -67,7 +67,7 @@ pub enum Outcome {
     Interrupted,
     /// The computation broke down numerically, or its energy balance does not close.
     Invalid {
-        /// Reason for the breakdown, such as the time and the body, or the energy balance.
+        /// Description of the failure: the time and the body of the breakdown, or the error of the energy balance.
         reason: String,
     },
 }

@@ -45,7 +45,7 @@ pub struct Boundaries {
     bodies: Vec<Vec<(Outline, Depth)>>,
 }
 
-/// Position of a part perpendicular to the plane of the drawing.
+/// Position of a part perpendicular to the plane of the model.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Depth {
     /// The part is a barrel.
@@ -65,7 +65,7 @@ enum Outline {
 }
 
 impl Boundaries {
-    /// Creates the boundaries of all bodies of a model, from the outlines that are drawn.
+    /// Creates the boundaries of all bodies of a model, from the outlines of their surfaces.
     pub fn new(assembly: &Assembly) -> Self {
         let turn = |i: usize| Rotation2::new(std::f64::consts::TAU * i as f64 / AROUND as f64);
         let around: Vec<Rotation2> = (0..AROUND).map(turn).collect();
@@ -168,7 +168,7 @@ impl Outline {
     }
 }
 
-/// A part at a pose, its bounding box, and its position out of the plane.
+/// Outline of a part at a pose, its bounding box as in [`Outline::at`], and its position perpendicular to the plane.
 type Solid = (Outline, [f64; 4], Depth);
 
 /// Returns the deepest overlap (m) of the parts of two bodies; zero if they do not overlap.

@@ -16,7 +16,7 @@ pub fn map<T: Sync, R: Send>(
     map_on(0, tasks, work, done)
 }
 
-/// Runs all tasks as [`map`] does, on a number of threads; zero for all cores.
+/// Runs all tasks as [`map`] does, but on the given number of threads; zero for one thread per core.
 pub fn map_on<T: Sync, R: Send>(
     threads: usize,
     tasks: &[T],

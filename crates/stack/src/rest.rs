@@ -27,7 +27,6 @@ impl Restless {
     }
 }
 
-/// Returns the advice for the user.
 fn remedy(lack: &Lack) -> String {
     match lack {
         Lack::Support => {

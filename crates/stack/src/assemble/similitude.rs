@@ -9,12 +9,12 @@ use barrelstack_dynamics::math;
 /// time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similitude {
-    /// λ: length of the model divided by the full length.
+    /// λ: length of the model divided by the full-scale length.
     pub length: f64,
 }
 
 impl Similitude {
-    /// Full size.
+    /// The factors at full scale, where λ = 1.
     pub const FULL: Self = Self { length: 1.0 };
 
     /// Creates the factors of a length scale λ.
@@ -22,37 +22,37 @@ impl Similitude {
         Self { length }
     }
 
-    /// Returns √λ, the factor of times and velocities.
+    /// Returns the scale factor for times and velocities, √λ.
     pub fn time(self) -> f64 {
         self.length.sqrt()
     }
 
-    /// Returns the factor of masses, λ³.
+    /// Returns the scale factor for masses, λ³.
     pub fn mass(self) -> f64 {
         self.length * self.length * self.length
     }
 
-    /// Returns the factor of moments of inertia, λ⁵.
+    /// Returns the scale factor for moments of inertia, λ⁵.
     pub fn inertia(self) -> f64 {
         self.mass() * self.length * self.length
     }
 
-    /// Returns the factor of forces, λ³.
+    /// Returns the scale factor for forces, λ³.
     pub fn force(self) -> f64 {
         self.mass()
     }
 
-    /// Returns the factor of stiffnesses `force / lengthⁿ`, with n = `exponent`.
+    /// Returns the scale factor for a stiffness `force / lengthⁿ`, with n = `exponent`.
     ///
-    /// If `per_length` is `true`, returns the factor of stiffnesses per length of boundary.
+    /// If `per_length` is `true`, returns the scale factor for a stiffness per length of boundary.
     pub fn stiffness(self, exponent: f64, per_length: bool) -> f64 {
         let divided = math::pow(self.length, exponent);
         self.force() / divided / if per_length { self.length } else { 1.0 }
     }
 
-    /// Returns the factor of damping constants `force / velocity`.
+    /// Returns the scale factor for a damping constant `force / velocity`.
     ///
-    /// If `per_length` is `true`, returns the factor of damping constants per length of boundary.
+    /// If `per_length` is `true`, returns the scale factor for a damping constant per length of boundary.
     pub fn damping(self, per_length: bool) -> f64 {
         self.force() / self.time() / if per_length { self.length } else { 1.0 }
     }

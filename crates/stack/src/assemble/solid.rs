@@ -8,7 +8,7 @@ use barrelstack_dynamics::{
 /// A convex part of a body at full scale, in the frame of that body's `Draft`.
 pub(crate) struct Solid {
     pub(super) shape: Shape,
-    /// Position of the frame of the shape (m).
+    /// Position (m) of the origin of the shape.
     pub(super) offset: Vec2,
     pub(super) seat: Seat,
     /// Nodes along the flat underside: positions (m) and tributary lengths (m); empty if the underside has no row of
@@ -21,18 +21,18 @@ pub(crate) struct Solid {
     pub(super) widest: f64,
     /// `true` if the solid contributes to the mass of its body.
     pub(super) weighs: bool,
-    /// `true` if the solid stands beside the barrels, out of the plane of the drawing, and never touches a barrel.
+    /// `true` if the solid stands beside the barrels, outside the plane of the model, and never touches a barrel.
     pub(super) out_of_plane: bool,
 }
 
-/// What a solid of a rack supports: the rack itself, a barrel, or the next rack.
+/// Role of a solid of a rack: what rests on the solid, and on what the solid itself rests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seat {
-    /// Nothing: the solid touches other bodies in impacts only.
+    /// No role: the solid touches other bodies in impacts only.
     None,
-    /// The rack stands on this solid: on the ground, or on the support with this index.
+    /// The rack stands on this solid, which rests on the ground or on the rack's support with this index.
     OnSupport(usize),
-    /// The rack stands on this solid: on the ground, or on any of its supports.
+    /// The rack stands on this solid, which rests on the ground or on any support of the rack.
     OnSupports,
     /// The solid carries the barrel of the rack with this index.
     Barrel(usize),
@@ -53,7 +53,7 @@ impl Seat {
     }
 }
 
-/// Contact data of a solid, stored at the same index as the surface of the solid.
+/// Contact data of a solid of a body. Their index in the body is that of the surface of the solid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) seat: Seat,
@@ -70,9 +70,9 @@ pub(super) struct Touch {
 /// A flat face of a solid that carries nodes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NodedFace {
-    /// Index of the set of nodes along the face.
+    /// Index, in the body, of the node set along the face.
     pub(super) nodes: usize,
-    /// Index of the set of corners and arcs that are not ends of the face.
+    /// Index, in the body, of the node set of the solid's corners and arcs that are not ends of the face.
     pub(super) others: usize,
     /// Index of the face in its body.
     pub(super) face: usize,
@@ -159,7 +159,7 @@ fn add(body: &mut Body<Planar>, nodes: Nodes<Planar>) -> usize {
     body.nodes.len() - 1
 }
 
-/// Length (m) of boundary that a contact without nodes represents, at full scale.
+/// Length (m) of boundary, at full scale, that a contact at a corner, an arc or a circle represents.
 pub(super) const TRIBUTARY: f64 = 0.01;
 
 /// Returns the node set for the whole boundary of a part: its corners and arcs, or the single node of a circle. The

@@ -1,4 +1,4 @@
-//! Assembly of a stack in one of its two planes, and its contact laws.
+//! Assembly of a stack as a planar model, across or along its barrels, and the contact laws of a stack.
 
 use barrelstack_dynamics::contact::{Rolling, Stop};
 use barrelstack_dynamics::{Interface, Model, Space, Vec2};
@@ -17,7 +17,7 @@ const ROLLING_LEVER: f64 = 0.01;
 /// Angular velocity (rad/s) at which the rolling resistance is close to its full value.
 const ROLLING_SPIN: f64 = 0.1;
 
-/// Builds the model of a stack in its plane.
+/// Builds the planar model of a stack, in the plane that `spec.view` names.
 pub(super) fn assemble(
     spec: &StackSpec,
     gravity: f64,
@@ -70,8 +70,10 @@ pub(super) fn assemble(
     })
 }
 
-/// Returns the contact laws of a stack, in the order of [`StackPair::ALL`]. The contact law of a seat is that of all
-/// seats that coincide in the model.
+/// Returns the contact laws of a stack, in the order of [`StackPair::ALL`].
+///
+/// In a planar model, seats that stand one behind the other coincide, and the contact law of a seat represents all of
+/// them.
 pub(super) fn laws<S: Space<Real = f64>>(
     spec: &StackSpec,
     shown: Shown,

@@ -1,4 +1,5 @@
-//! Assembly of a stack in the plane across its barrels: circles in the cradles of racks that lie on the circles below.
+//! Assembly of a stack in the plane across its barrels. Barrels are circles in the cradles of racks. A rack stands on
+//! the ground, on the barrels below, or on the rack below.
 //!
 //! ```text
 //!      ( B2.1 )   ( B2.2 )
@@ -26,8 +27,8 @@ pub const BAR_RADIUS: f64 = 0.015;
 
 /// Corner radius (m) of tubes: an assumption.
 ///
-/// Twice this radius exceeds the stroke of a seat, so that the cores of two tubes (the parts inside the rounding) never
-/// touch.
+/// Twice this radius exceeds the stroke of a seat, which is the penetration beyond which the impact law also acts. The
+/// cores of two tubes (the parts inside the rounding) therefore never touch.
 pub const TUBE_CORNER: f64 = 0.012;
 
 /// Adds all levels. Returns the height (m) of the stack and the displacement (m) beyond which a rack is no longer

@@ -119,7 +119,7 @@ pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Isolators, InputE
     Ok(isolators)
 }
 
-/// Largest sine of the slope of a dish at its stops.
+/// Largest permitted sine of the slope of a dish at its stops.
 const STEEPEST: f64 = 0.5;
 
 /// Half of the angle (rad) that a dish spans. A dish extends beyond its stops.
@@ -142,8 +142,8 @@ impl Isolators {
         self.path != Path::None
     }
 
-    /// Returns the contact law of the bearings at one end of a platform; `share` is the fraction of these bearings that
-    /// one contact represents.
+    /// Returns the contact law of one contact at an end of a platform. The contact represents the fraction `share` of
+    /// the bearings at that end.
     pub fn law(&self, share: f64) -> Interface {
         let stiffness = self.bearing_stiffness * share;
         Interface {
@@ -161,8 +161,8 @@ impl Isolators {
         }
     }
 
-    /// Returns the springs and stops of a platform along an axis of the ground; `share` is the fraction of these
-    /// springs and stops that the element represents.
+    /// Returns the guide of a platform along an axis of the ground. The guide represents the fraction `share` of the
+    /// springs and stops of the platform.
     pub fn guide<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -231,7 +231,10 @@ impl Isolators {
         Ok(())
     }
 
-    /// Adds a bearing at `x + end` (m) on the ground, `center` (m) below the center of mass of the platform.
+    /// Adds the bearing at one end of a platform.
+    ///
+    /// `x` (m) is the position of the platform along the ground, and `end` (m) is the position of the bearing relative
+    /// to the platform. `center` (m) is the height of the platform's center of mass above the ground.
     fn bear(
         &self,
         builder: &mut Builder<'_>,

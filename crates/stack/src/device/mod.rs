@@ -133,20 +133,20 @@ pub struct Words {
     /// Settings that represent a badly maintained or badly fitted device, to be applied [over](Setting::over) a
     /// candidate.
     pub degraded: &'static [Setting],
-    /// Overrides, applied [over](Setting::over) a candidate, with which the device has no effect, because it is out of
-    /// reach, or as slack or weak as possible.
+    /// Overrides, applied [over](Setting::over) a candidate, with which the device has no effect: it is absent, too
+    /// slack or too far away to act, or has the contact law of the seats that it replaces.
     ///
-    /// The results are then bit-identical to results without the device, if the time step and its division in impacts
-    /// are the same.
+    /// The results are then bit-identical to results without the device, if the time step and the number of substeps
+    /// during impacts are the same.
     pub idle: &'static [&'static str],
     /// Cost of the device.
     pub cost: Cost,
 }
 
-/// A setting of a device, in words and as overrides of the scenario.
+/// A setting of a device: a description, and the overrides of the scenario that apply it.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// Description in words.
+    /// Description, such as "the top rack tied to the ceiling".
     pub name: &'static str,
     /// Overrides of the scenario, such as `stack.strap.levels=3`.
     pub overrides: &'static [&'static str],
@@ -171,15 +171,15 @@ impl Setting {
 /// Cost of buying and installing a device.
 #[derive(Debug, PartialEq)]
 pub struct Cost {
-    /// Lower and upper bound (US$ of 2024) per unit.
+    /// Lower and upper bounds of the cost (US$ of 2024).
     pub dollars: [f64; 2],
-    /// Unit to which the bounds apply.
+    /// Whether the bounds are per stack or per level.
     pub each: Each,
     /// Source of the figures.
     pub source: &'static str,
 }
 
-/// Unit to which a cost applies.
+/// What a cost is stated for: a stack or a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Each {
     /// The whole stack.
@@ -240,7 +240,7 @@ fn check_levels(reader: &Reader<'_>, device: u32, stack: u32) -> Result<(), Inpu
 /// A force element of a device that is installed and tightened after the stack has settled.
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
-    /// The element on the stack as drawn, before the stack settles.
+    /// The element as it is before the stack settles.
     pub(crate) element: Element<Planar>,
     /// Length (m) of the element minus the distance between its ends; negative under pretension.
     give: f64,
@@ -251,7 +251,7 @@ impl Assembly {
     /// Installs the devices and tightens them on the stack as it stands in `state`.
     ///
     /// # Errors
-    /// If an element that was valid as drawn is invalid on the settled stack.
+    /// If an element that was valid before the stack settled is invalid on the settled stack.
     pub(crate) fn fasten(&mut self, state: &mut State<Planar>) -> Result<(), ModelError> {
         let loose = std::mem::take(&mut self.loose);
         if loose.is_empty() {

@@ -126,7 +126,10 @@ impl AnchorTies {
         self.levels > 0
     }
 
-    /// Returns one tie before slack is added; `share` is the fraction of a tie that the element represents.
+    /// Returns one tie before slack is added.
+    ///
+    /// `share` is the fraction of the tie that the model contains: 1, or less in a planar model that contains only a
+    /// slice of each rack.
     pub fn tie<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -148,7 +151,7 @@ impl AnchorTies {
     /// Installs the ties, from the ground up.
     ///
     /// # Errors
-    /// If racks are tied to neighbors that they do not have.
+    /// If racks are to be tied to their neighbors, but each level has only one rack.
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
         if !self.is_on() {

@@ -128,7 +128,8 @@ impl TunedMass {
 
     /// Returns the spring, damper and stops of a mass, along an axis of the link's first body.
     ///
-    /// `share` is the fraction of the mass that the model contains.
+    /// `share` is the fraction of the mass that the model contains: 1, or less in a planar model that contains only a
+    /// slice of each rack.
     pub fn swing<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -152,7 +153,7 @@ impl TunedMass {
 
     /// Returns the stiff support of a mass, along an axis of the link's first body.
     ///
-    /// `share` is the fraction of the mass that the model contains.
+    /// `share` is as in [`TunedMass::swing`].
     pub fn hold<S: Space<Real = f64>>(
         &self,
         link: Link<S>,

@@ -68,23 +68,23 @@ struct Batch<'a, 'b, R: Real> {
     group: &'a [Run<'a>],
     stacks: &'a [Stack<'a>],
     audience: &'a mut Audience<'b>,
-    /// Index, in the group, of the next run to be loaded.
+    /// Index in `group` of the next run to be loaded.
     next: usize,
-    /// Index, in the group, of the run in every lane.
+    /// For each lane, the index of its run in `group`.
     runs: Vec<usize>,
-    /// Losses of seats and falls in every lane; `None` before the first run is loaded.
+    /// Losses of seats and falls in each lane; `None` before the first run is loaded.
     fates: Option<Fates<R>>,
-    /// Observer of the contact stresses in every lane.
+    /// Observer of the contact stresses in all lanes.
     stresses: StressWatch<R>,
-    /// Forces between bodies of every lane; `None` before the first run is loaded.
+    /// Forces between bodies in each lane; `None` before the first run is loaded.
     joints: Option<Joints<R>>,
-    /// Stop criteria of every lane; `None` before the first run is loaded.
+    /// Stop criteria of each lane; `None` before the first run is loaded.
     end: Option<watch::End<R>>,
-    /// Barrel positions of every lane.
+    /// Barrel positions in each lane.
     trails: Vec<Trail>,
-    /// Time (s) at which the next sample of every lane is due; infinite in lanes without a case.
+    /// For each lane, the time (s) at which its next sample is due; infinity in lanes without a case.
     due: R,
-    /// Progress of the case in every lane; `None` in lanes without a case.
+    /// Progress of the case in each lane; `None` in lanes without a case.
     shares: Vec<Option<Share>>,
     /// The lanes that met the rest criterion in the last step.
     rested: R::Mask,

@@ -22,7 +22,7 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares a scenario with its own motion.
+    /// Creates a case from a scenario, with the ground motion that the scenario specifies.
     ///
     /// # Errors
     /// If the motion cannot be read.
@@ -56,8 +56,8 @@ pub struct CaseResult {
     pub demands: Demands,
     /// Demands over the whole run.
     pub demands_whole_run: Demands,
-    /// Forces between bodies that support or have touched each other: for each pair, its name, and its forces at rest
-    /// and at their maximum. Empty if the case could not run or is invalid.
+    /// Names of the pairs of bodies that support or have touched each other, each with its force at rest and its
+    /// largest forces. Empty if the case could not run or is invalid.
     pub joints: Vec<(String, Joint)>,
     /// Largest residual displacement (m) of a barrel relative to the ground: along x in a planar model, horizontal in a
     /// three-dimensional model.
@@ -73,7 +73,7 @@ pub struct CaseResult {
     pub steps: Option<u64>,
     /// Residual of the energy balance divided by the energy that passed through the system.
     pub energy_residual_ratio: Option<f64>,
-    /// Warnings for the reader of the result.
+    /// Warnings that concern the result.
     pub warnings: Vec<String>,
     /// Barrel positions over time; empty if the case could not run or is invalid.
     pub trail: Trail,
@@ -93,12 +93,12 @@ impl CaseResult {
         Self { outcome: Ok(Outcome::Interrupted), ..Self::failed(String::new()) }
     }
 
-    /// Returns `true` for a case that was stopped before its end.
+    /// Returns `true` if the case was stopped before its end, or not started.
     pub fn is_interrupted(&self) -> bool {
         matches!(self.outcome, Ok(Outcome::Interrupted))
     }
 
-    /// Creates the result of a case that ran until a time (s), from its verdict and the outcomes for its bodies.
+    /// Creates the result of a case that ended at `time` (s), from its verdict and its observations.
     pub(super) fn of(
         assembly: &Assembly,
         ground: &Ground,
@@ -192,7 +192,7 @@ impl CaseResult {
         }
     }
 
-    /// Returns whether the stack collapsed; `None` without a verdict.
+    /// Returns whether the stack collapsed; `None` if there is no verdict.
     pub fn collapsed(&self) -> Option<bool> {
         match self.outcome {
             Ok(Outcome::Stable) => Some(false),

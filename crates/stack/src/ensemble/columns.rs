@@ -12,11 +12,11 @@ use crate::watch::Joint;
 pub struct CaseColumn {
     /// Name without the unit.
     pub name: &'static str,
-    /// SI unit; empty for pure numbers and for text.
+    /// SI unit; empty for pure numbers and for strings.
     pub unit: &'static str,
     /// Role of the column.
     pub role: Role,
-    /// Description in a sentence.
+    /// Description of the column.
     pub meaning: &'static str,
     /// Returns the value of the column for a case; `None` if the value does not apply or is unknown.
     pub get: Get,
@@ -29,7 +29,7 @@ pub enum Get {
     Integer(fn(&CaseResult) -> Option<usize>),
     /// A number in SI units.
     Number(fn(&CaseResult) -> Option<f64>),
-    /// A text.
+    /// A string.
     Text(fn(&CaseResult) -> Option<String>),
 }
 
@@ -95,7 +95,7 @@ fn columns<'a>(cases: &(impl Iterator<Item = &'a CaseResult> + Clone)) -> Vec<Co
 
 /// Returns a table of the variants of a stack: the number of the variant, then the columns of [`CASE_COLUMNS`].
 ///
-/// Number 0 is the stack as stated. Interrupted cases have no row.
+/// Number 0 is the stack as the scenario states it, without changes. Interrupted cases have no row.
 pub fn variants<'a>(cases: impl Iterator<Item = &'a CaseResult> + Clone) -> Vec<Column> {
     let ended = (0..).zip(cases).filter(|(_, case)| !case.is_interrupted());
     let spec = ColumnSpec::new(VARIANT.0, "", Role::Key, ValueKind::Integer);

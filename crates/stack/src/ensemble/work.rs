@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Number of equal parts in which the progress of a case is counted.
+/// Resolution of the counters of progress: a case simulated to its maximum duration counts as this many units.
 const PARTS: f64 = 1e6;
 
 static DONE: AtomicU64 = AtomicU64::new(0);
@@ -37,7 +37,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// Returns the work of this process so far.
+    /// Returns the progress of all cases of this process up to now.
     pub fn now() -> Self {
         Self {
             done: DONE.load(Ordering::Relaxed) as f64 / PARTS,
@@ -49,7 +49,7 @@ impl Work {
         }
     }
 
-    /// Returns the work done since an earlier call of [`Work::now`].
+    /// Returns the progress made since `earlier`, the result of an earlier call of [`Work::now`].
     #[must_use]
     pub fn since(self, earlier: Self) -> Self {
         Self {

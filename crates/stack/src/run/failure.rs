@@ -50,7 +50,7 @@ pub enum RunFailure {
         frames: f64,
         /// Number of bodies.
         bodies: usize,
-        /// Memory for all samples and frames (10⁹ bytes).
+        /// Memory (GB) for all samples and frames.
         gigabytes: f64,
     },
 }
