@@ -98,7 +98,7 @@ const used = async ([name, { several, plain }]) => {
   await suite.check(`${name}: writes no error and asks for nothing but itself`, () => demand(faults.length === 0, faults.join("\n")));
 };
 await twoAtATime(Object.entries(PAGES), used);
-for (const name of ["demo", "eight", "along", "levels", "space"]) {
+for (const name of ["demo", "eight", "levels", "space"]) {
   const checks = {
     "shows wood where barrels are, in three dimensions": shows,
     "turns and zooms by pointer, wheel and keys": turns,
@@ -126,7 +126,7 @@ for (const name of ["demo", "eight", "levels"]) {
   await suite.check(`${name}: loops slowly around what matters until somebody takes over`, () => loops(browser, reportOf(pages, name)));
 }
 await suite.check("demo: an instant has an address", () => links(browser, reportOf(pages, "demo")));
-for (const [name, file, compared] of [
+await twoAtATime([
   ["demo", "demo/summary.json", ofRun],
   ["eight", "eight/summary.json", ofRun],
   ["along", "along/summary.json", ofRun],
@@ -142,10 +142,9 @@ for (const [name, file, compared] of [
   ["layouts", "layouts/comparison.json", ofLayouts],
   ["aftershock", "aftershock/aftershocks.json", ofAftershocks],
   ["reproduce", null, ofReproduction],
-]) {
-  await checkOn(file ? "states the numbers of its JSON" : "its headline counts the rows of its table", name, (page) =>
-    compared(page, file && JSON.parse(readFileSync(join(pages, file)))));
-}
+], ([name, file, compared]) =>
+  checkOn(file ? "states the numbers of its JSON" : "its headline counts the rows of its table", name, (page) =>
+    compared(page, file && JSON.parse(readFileSync(join(pages, file))))));
 await checkOn("wrong numbers are detected", "demo", async (page) => {
   const spoil = (change) => {
     const summary = JSON.parse(readFileSync(join(pages, "demo/summary.json")));
@@ -157,20 +156,19 @@ await checkOn("wrong numbers are detected", "demo", async (page) => {
   demand(await spoil(({ bodies }) => { bodies.at(-2).peak_slip += 0.01; }), "another slip is not detected");
   demand(await spoil(({ remedy }) => { remedy.tried[0].failed += 1; }), "another count of a change is not detected");
 });
-for (const [name, file, compared, change] of [
+await twoAtATime([
   ["protect", "protect/protect.json", ofProtection, ({ protections }) => { protections[0].motions += 1; }],
   ["score", "score/rockscore.json", ofScore, ({ states }) => { states[0].collapsed[3] += 0.02; }],
   ["motion", "motion.json", ofMotion, ({ records }) => { records[0].channels[0].measures.pgv.value *= 1.001; }],
   ["cellar", "cellar/cellar.json", ofCellar, ({ stacks }) => { stacks[0].falls.share -= 0.02; }],
   ["layouts", "layouts/comparison.json", ofLayouts, ({ layouts }) => { layouts[1].barrels_fallen.mean += 1; }],
   ["aftershock", "aftershock/aftershocks.json", ofAftershocks, ({ inspection }) => { inspection.at(-1).falls[0].share += 0.02; }],
-]) {
-  await checkOn("a wrong number is detected", name, async (page) => {
+], ([name, file, compared, change]) =>
+  checkOn("a wrong number is detected", name, async (page) => {
     const document = JSON.parse(readFileSync(join(pages, file)));
     change(document);
     demand(await compared(page, document).then(() => false, () => true), "it is not");
-  });
-}
+  }));
 await suite.check("axe finds what is wrong with a spoiled page", () => on("eight", {}, spoiled));
 // Pictures.
 await goldens.tools();

@@ -8,7 +8,6 @@ import { missing } from "./browser.mjs";
 /** The date and the commit that pages state, the same on every day. */
 const STAMP = { SOURCE_DATE_EPOCH: "1408875644", BARRELSTACK_COMMIT: "0123456789ab" };
 const ROOM = ["--set=run.duration=9 s", "--set=block.1.stacks=1"];
-const FRICTION = "interface.rack-ground.friction.coefficient";
 
 /**
  * Pages by name: the arguments of the program without `--out`, what is run before it (`{folder}` is that of all
@@ -28,6 +27,7 @@ export const PAGES = {
     looks: ["desktop-light", "desktop-dark", "phone-light", "print"],
   },
   half: {
+    plain: true,
     args: ["run", "candia-8-barrels-half-scale", "--no-remedy", "--quiet"],
     looks: ["desktop-light", "phone-dark"],
   },
@@ -39,11 +39,6 @@ export const PAGES = {
     several: true,
     args: ["compare", "demo-napa", "--against", "stack.levels=4", "--variants=16", "--quiet", "--json"],
     looks: ["desktop-light", "desktop-dark", "phone-light", "print"],
-  },
-  friction: {
-    several: true,
-    args: ["compare", "demo-napa", "--set", `${FRICTION}=0.4`, "--against", `${FRICTION}=0.1`, "--variants=8", "--quiet"],
-    looks: [],
   },
   // A run in space, which is turned, or shown from three sides.
   space: { plain: true, args: ["run", "demo-napa", "--set", "stack.view=spatial", "--variants=0", "--quiet"], looks: [] },
