@@ -52,7 +52,7 @@ pub struct StatedPeak {
     pub quantity: Quantity,
     /// Absolute value stated in the header (SI).
     pub stated: f64,
-    /// One unit of the last printed digit (SI).
+    /// Value of one unit in the last printed digit of the stated peak (SI).
     pub resolution: f64,
     /// Absolute peak of the samples in the file (SI).
     pub measured: f64,
@@ -183,7 +183,7 @@ impl Channel {
     }
 }
 
-/// A warning of a reader about a file.
+/// A warning that a reader gives about a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
     /// Line number, counted from 1; `None` if the warning concerns no single line.
@@ -303,8 +303,9 @@ impl Record {
         }
     }
 
-    /// Warns of a stated start (on a 0-based line) that cannot be parsed. Channels without a start
-    /// are assumed to be simultaneous.
+    /// Adds a warning if `stated` is not empty and `start` is `None`, that is, if the stated start
+    /// could not be parsed. `line` is counted from 0. Channels without a start are assumed to be
+    /// simultaneous.
     pub(crate) fn warn_of_start(&mut self, line: usize, stated: &str, start: Option<Utc>) {
         if start.is_none() && !stated.trim().is_empty() {
             let stated = format::quoted(stated);

@@ -152,7 +152,7 @@ impl Record {
     /// processing.
     ///
     /// The longer component is cut to the length of the shorter one. With [`Processing::none`], the
-    /// record drives a model from its first sample.
+    /// ground motion starts at the first sample of the record.
     ///
     /// # Errors
     /// If a component is missing, the time steps differ, or a setting is out of range.
@@ -204,8 +204,8 @@ impl Record {
         }
     }
 
-    /// Returns the two horizontal channels for measures over directions: the first two channels
-    /// that are not vertical.
+    /// Returns the two horizontal channels from which measures over all directions, such as `RotD50`,
+    /// are computed: the first two channels that are not vertical.
     ///
     /// # Errors
     /// If there are fewer than two, their directions are unknown or not perpendicular, or they

@@ -57,7 +57,7 @@ impl Site {
     }
 }
 
-/// Parses latitude and longitude (degrees) from a text such as `35.525N, 117.365W`,
+/// Parses latitude and longitude (degrees) from a string such as `35.525N, 117.365W`,
 /// `37.73 N 47.80 E` or `34 25 09N, 118 25 34W`.
 pub(crate) fn position(text: &str) -> Option<(f64, f64)> {
     let upper = text.to_ascii_uppercase();
@@ -70,7 +70,7 @@ pub(crate) fn position(text: &str) -> Option<(f64, f64)> {
     Some((part(['N', 'S'])?, part(['E', 'W'])?))
 }
 
-/// Parses an angle at the end of a text, given in degrees, or in degrees, minutes and seconds.
+/// Parses an angle at the end of a string, given in degrees, or in degrees, minutes and seconds.
 fn angle_before(text: &str) -> Option<f64> {
     let text = text.trim_end();
     let number = |c: char| c.is_ascii_digit() || c == '.' || c == ' ';

@@ -1,4 +1,4 @@
-//! Units of acceleration and motion in files and options.
+//! Units of acceleration, velocity and displacement.
 
 use std::str::FromStr;
 
@@ -92,7 +92,7 @@ impl FromStr for AccelerationUnit {
 pub(crate) struct MotionUnit {
     /// Physical quantity of the unit.
     pub(crate) quantity: Quantity,
-    /// SI value of the unit.
+    /// Factor that converts a value in this unit to SI units.
     pub(crate) factor: f64,
 }
 

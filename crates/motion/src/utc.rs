@@ -106,7 +106,7 @@ impl Utc {
         Self { microseconds: self.microseconds + away }
     }
 
-    /// Parses an instant from the numbers of a text such as `8/24/14, 10:20:33.0 UTC`.
+    /// Parses an instant from the numbers in a string such as `8/24/14, 10:20:33.0 UTC`.
     ///
     /// A two-digit year is between 1950 and 2049. A UTC offset after the time of day, such as
     /// `+03:00`, is subtracted; `AM` and `PM` are recognized.

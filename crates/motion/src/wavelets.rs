@@ -11,7 +11,8 @@ const RELAXATION: f64 = 0.6;
 /// Fraction of the target above which extrema other than the peak are also constrained, so that the
 /// correction of one peak does not raise another.
 const WATCHED: f64 = 0.85;
-/// Weight of a constrained extremum that does not exceed the target.
+/// Weight of the equation for a constrained extremum that does not exceed the target. All other equations have a weight
+/// of 1.
 const WATCHED_WEIGHT: f64 = 0.4;
 
 /// Largest number of solutions of the linear system in one round. The system is solved again whenever a solution raises
@@ -24,10 +25,11 @@ const LARGEST_SHARE: f64 = 0.8;
 const SMALLEST_SHARE: f64 = 0.05;
 /// Polishing ends when the misfit is at most this fraction of the tolerance.
 const POLISHED: f64 = 0.95;
-/// In most rounds, polishing does not correct a peak whose misfit is below this fraction of the
-/// tolerance, because fewer corrections cause fewer disturbances.
+/// In two of three rounds, polishing does not correct a peak whose misfit is below this fraction of
+/// the tolerance, because fewer corrections cause fewer disturbances.
 const BAND: f64 = 0.6;
-/// Minimum number of line segments per period when a wavelet is applied to oscillators.
+/// Minimum number of segments per period in the piecewise linear approximation of a wavelet, from which the responses
+/// to the wavelet are computed. If the motion has fewer samples per period, every sample interval is a segment.
 const WAVELET_LINES: f64 = 40.0;
 /// A free vibration is neglected after it has decayed to the fraction `exp(-FORGOTTEN)`.
 pub(crate) const FORGOTTEN: f64 = 7.0;
@@ -57,8 +59,8 @@ struct Demand {
     weight: f64,
 }
 
-/// Matches in rounds. Each round solves a linear system for wavelets that correct the responses at
-/// all peak times.
+/// Matches the response spectrum to the target in rounds. Each round solves a linear system for the
+/// amplitudes of wavelets that correct the responses at all peak times.
 pub(crate) fn match_in_time(
     work: &Work<'_>,
     start: &[f64],
@@ -104,8 +106,8 @@ pub(crate) fn polish(
     // value.
     let mut promising = target;
     for round in 1..=settings.rounds {
-        // Other rounds do not correct peaks within the band. Every third round corrects all peaks,
-        // so that the peaks within the band do not drift to its edge.
+        // Every third round corrects all peaks, so that the peaks within the band do not drift to
+        // its edge. The other rounds do not correct peaks within the band.
         let band = if round % 3 == 0 { 0.0 } else { BAND * settings.tolerance };
         let mut periods = matched_periods(settings, round);
         periods.extend(
@@ -389,7 +391,7 @@ fn extrema(
 pub(crate) struct Wavelet {
     pub(crate) first: usize,
     pub(crate) values: Vec<f64>,
-    /// Number of samples per line segment when the wavelet is applied to oscillators.
+    /// Number of sample intervals per segment of the piecewise linear approximation ([`WAVELET_LINES`]).
     stride: usize,
 }
 
@@ -443,7 +445,7 @@ impl Wavelet {
     }
 }
 
-/// Free vibration of an oscillator, evaluated directly after any number of steps.
+/// Free vibration of an oscillator. A closed-form expression gives the displacement after any number of steps.
 struct FreeVibration {
     stiffness: f64,
     decay: f64,

@@ -1,5 +1,5 @@
-//! Analyses of several runs or records: comparisons, safe heights, protections, scores, the cases
-//! of the paper, and record sets.
+//! Analyses of several runs or records: comparisons, safe heights, protections, scores, record sets, and
+//! the reproduction of Candia, de la Llera and Almazán (2008).
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -215,7 +215,7 @@ pub(crate) fn select(
     Ok((chosen, [mean, deviation, set.mean, set.deviation], set.eligible))
 }
 
-/// Reproduces the numbers and figures of the paper.
+/// Reproduces the numbers and figures of Candia, de la Llera and Almazán (2008).
 #[pyfunction]
 pub(crate) fn reproduce(
     py: Python<'_>,

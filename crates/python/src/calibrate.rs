@@ -1,4 +1,4 @@
-//! Contact parameters from tests.
+//! Fits contact parameters to tests, recorded responses and observed collapses.
 
 use std::path::Path;
 

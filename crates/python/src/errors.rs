@@ -1,4 +1,4 @@
-//! Converts errors of the library to exceptions of the package, with their positions.
+//! Converts errors of the Rust crates to exceptions of the Python package, with the position of each error.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ struct Spot {
     path: Option<String>,
     line: Option<usize>,
     column: Option<usize>,
-    /// The value that contains the error, as `field=value`, if the value is not in a file.
+    /// The override that contains the error, as `field=value`; `None` if the error is in a file.
     value: Option<String>,
 }
 
@@ -51,29 +51,29 @@ fn raise(class: &str, message: String, spot: Spot) -> PyErr {
     })
 }
 
-/// Converts the error of a scenario that cannot be read.
+/// Converts an error from reading a scenario to a `ScenarioError`.
 pub(crate) fn scenario(error: &ScenarioError) -> PyErr {
     raise("ScenarioError", error.to_string(), Spot::of(error.place()))
 }
 
-/// Creates the error for a field of the scenario that contradicts the request.
+/// Creates a `ScenarioError` without a position, for a valid scenario that the called function does not accept.
 pub(crate) fn inconsistent(message: String) -> PyErr {
     raise("ScenarioError", message, Spot::default())
 }
 
-/// Converts the error of a record file that cannot be read.
+/// Converts an error from reading a record file to a `RecordError`.
 pub(crate) fn read(error: &ReadError) -> PyErr {
     let path = Some(error.file.clone());
     let (line, column) = (error.line, error.column);
     raise("RecordError", error.to_string(), Spot { path, line, column, value: None })
 }
 
-/// Converts the error of an operation that a record does not permit.
+/// Converts an error from an operation on a record, such as an unknown component, to a `RecordError`.
 pub(crate) fn motion(error: MotionError) -> PyErr {
     raise("RecordError", error.to_string(), Spot::default())
 }
 
-/// Converts the error of a motion that cannot be read or generated.
+/// Converts an error from reading or generating a ground motion to a `RecordError`.
 pub(crate) fn ground(error: &GroundError) -> PyErr {
     match error {
         GroundError::Read(error) => read(error),
@@ -87,7 +87,8 @@ pub(crate) fn ground(error: &GroundError) -> PyErr {
     }
 }
 
-/// Converts the error of a run, with its position in the scenario.
+/// Converts the failure of a run to a `RunError`, with the position of the responsible field in the scenario. An error
+/// from the ground motion is converted to a `RecordError`.
 pub(crate) fn run(failure: &RunFailure, scenario: &Scenario) -> PyErr {
     if let RunFailure::Ground(error) = failure {
         return ground(error);
@@ -98,7 +99,8 @@ pub(crate) fn run(failure: &RunFailure, scenario: &Scenario) -> PyErr {
     }
 }
 
-/// Converts the error of planning, running or collecting a study.
+/// Converts an error from planning, running or collecting a study. The exception is a `ScenarioError` for an invalid
+/// input file, a `RecordError` for a motion, a `KeyboardInterrupt` for a stopped study, and otherwise a `StudyError`.
 pub(crate) fn study(error: StudyError) -> PyErr {
     match &error {
         StudyError::File(error) => scenario(error),
@@ -126,12 +128,13 @@ pub(crate) fn study(error: StudyError) -> PyErr {
     }
 }
 
-/// Converts the error of a study whose results do not permit a decision or cannot be written.
+/// Converts an error from an analysis that is based on studies, such as a decision or an export, to a `StudyError`.
 pub(crate) fn study_result<E: ToString>(error: E) -> PyErr {
     raise("StudyError", error.to_string(), Spot::default())
 }
 
-/// Converts the error of a table that cannot be read, or of a file that cannot be written.
+/// Converts an error of any other kind, such as a table that cannot be read or a file that cannot be written, to an
+/// `Error`.
 pub(crate) fn general<E: ToString>(error: E) -> PyErr {
     raise("Error", error.to_string(), Spot::default())
 }

@@ -21,7 +21,7 @@ mod table;
 mod value;
 mod view;
 
-/// The library for the package `barrelstack`.
+/// Native extension module of the Python package `barrelstack`.
 #[pyo3::pymodule]
 mod _native {
     use pyo3::prelude::*;

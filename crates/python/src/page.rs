@@ -1,4 +1,5 @@
-//! Results with numbers and a page: comparisons, rankings, calibrations, and decisions of a study.
+//! Results that consist of JSON numbers and a page: comparisons, rankings, calibrations, and
+//! decisions from studies.
 
 use std::borrow::Borrow;
 use std::path::PathBuf;
@@ -14,7 +15,7 @@ use pyo3::types::PyBytes;
 use crate::errors;
 use crate::scenario::bytes;
 
-/// A result: its numbers as JSON, and its page.
+/// A result: its numbers as JSON, and the document from which its page and its files are made.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Page {
     numbers: String,
@@ -22,7 +23,7 @@ pub(crate) struct Page {
 }
 
 impl Page {
-    /// Creates a page from its numbers, which become JSON text, and its document.
+    /// Creates a page from its document and its numbers, which are serialized to JSON.
     pub(crate) fn of<N: serde::Serialize>(numbers: &N, document: Document) -> PyResult<Self> {
         let numbers = described::to_json(numbers).map_err(errors::general)?;
         Ok(Self { numbers, document })
@@ -82,7 +83,7 @@ pub(crate) fn language_of(code: &str) -> PyResult<Language> {
     code.parse().map_err(|error: UnknownLanguage| PyValueError::new_err(error.to_string()))
 }
 
-/// Returns the page of a document in a language, given by its code.
+/// Returns a document as an HTML page in the language with the given code.
 pub(crate) fn html_in<D: Borrow<Document>>(
     py: Python<'_>,
     language: &str,
@@ -92,7 +93,7 @@ pub(crate) fn html_in<D: Borrow<Document>>(
     Ok(py.detach(|| html(&document().borrow().in_language(language))))
 }
 
-/// Returns the PDF of a document in a paper size and in a language, both given by name.
+/// Returns a document as a PDF in the paper size with the given name and in the language with the given code.
 pub(crate) fn pdf_in<'py, D: Borrow<Document>>(
     py: Python<'py>,
     (paper, language): (&str, &str),

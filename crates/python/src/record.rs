@@ -18,7 +18,7 @@ use crate::errors;
 use crate::scenario::bytes;
 use crate::view::{Numbers, view};
 
-/// A record of the library.
+/// Python handle of a `barrelstack_motion::Record`.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Record {
     pub(crate) inner: Arc<barrelstack_motion::Record>,
@@ -30,7 +30,7 @@ impl From<barrelstack_motion::Record> for Record {
     }
 }
 
-/// Facts of a channel: name, azimuth (degrees), `true` if vertical, time step (s), start time.
+/// A channel: its name, azimuth (degrees), `true` if it is vertical, time step (s) and start time.
 type ChannelFacts = (String, Option<f64>, bool, f64, Option<String>);
 
 #[pymethods]
@@ -377,8 +377,8 @@ impl Record {
     }
 }
 
-/// Samples a motion as a record, with the time step of its samples, or with the natural time step
-/// of its formula.
+/// Samples a motion as a record. The time step is `History::natural_step` of the horizontal
+/// component, or of the vertical component of a purely vertical motion.
 pub(crate) fn of_motion(motion: &GroundMotion) -> PyResult<Record> {
     let step = match &motion.vertical {
         // A purely vertical motion has a horizontal component of length zero.

@@ -1,4 +1,4 @@
-//! Runs, with their outcomes, histories (without copies) and pages.
+//! Planar runs: outcomes, histories, pages and files. NumPy arrays of histories share memory with the run.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -57,8 +57,11 @@ impl Run {
     }
 }
 
-/// Returns the members with the given names, in the order of `all`; all members if no names are
-/// given.
+/// Returns the items of `all` whose names are in `names`, in the order of `all`. Returns all items if
+/// `names` is empty. `what` is the word for an item in error messages.
+///
+/// # Errors
+/// If one of the names does not belong to any item of `all`.
 pub(crate) fn chosen<T: Copy, const N: usize>(
     what: &str,
     names: &[String],
@@ -75,8 +78,9 @@ pub(crate) fn chosen<T: Copy, const N: usize>(
     Ok(all.into_iter().filter(requested).collect())
 }
 
-/// Writes the requested parts of the rendering of a run; `end_time` (s) is the end of the run.
-/// Returns the folder or file of each part, and its number of files.
+/// Writes the requested parts of the rendering of a run, such as its figures or its animation. `end_time`
+/// (s) is the end of the run. Returns, for each part, its folder or file and the number of files
+/// written.
 pub(crate) fn rendered(
     py: Python<'_>,
     (folder, parts, overwrite): (&Path, &[String], bool),
@@ -272,8 +276,8 @@ impl Run {
         )
     }
 
-    /// Writes the requested parts of the rendering. Returns the folder or file of each part, and its
-    /// number of files.
+    /// Writes the requested parts of the rendering, such as figures or an animation. Returns, for each part,
+    /// its folder or file and the number of files written.
     #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
     fn render(
         &self,

@@ -23,7 +23,7 @@ use crate::run::{Glance, Run};
 use crate::space::SpatialRun;
 use crate::value;
 
-/// A scenario of the library.
+/// Python handle of a `barrelstack::Scenario`.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Scenario {
     pub(crate) inner: Arc<barrelstack::Scenario>,
@@ -175,9 +175,10 @@ impl Scenario {
         answer.map(SpatialRun::of).map_err(|error: RunFailure| errors::run(&error, &scenario))
     }
 
-    /// Runs the scenario as stated in one plane, with an observer function.
+    /// Runs the scenario, without variants, in its first plane, and calls an observer function.
     ///
-    /// The observer is called every few steps; a true return value stops the run.
+    /// The observer `look` is called at every step whose number is a multiple of `every`. A true return value stops
+    /// the run.
     fn run_before(
         &self,
         py: Python<'_>,
@@ -274,7 +275,7 @@ pub(crate) fn report_advance(state: &ProgressState, now: Advance) -> ControlFlow
     }
 }
 
-/// Returns the name and the text of each bundled scenario.
+/// Returns the name and the content of each bundled scenario.
 #[pyfunction]
 pub(crate) fn scenarios() -> Vec<(&'static str, &'static str)> {
     builtin::names().filter_map(|name| Some((name, builtin::get(name)?))).collect()
@@ -296,7 +297,7 @@ pub(crate) fn schema(of: &str) -> PyResult<String> {
     serde_json::to_string(&schema).map_err(errors::general)
 }
 
-/// Returns the reference of scenario files or study files in Markdown.
+/// Returns the reference documentation of scenario files or of study files, in Markdown.
 #[pyfunction]
 pub(crate) fn reference(of: &str) -> PyResult<String> {
     match of {

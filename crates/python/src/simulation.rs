@@ -94,7 +94,8 @@ impl Listed for Spatial {
     }
 }
 
-/// Reads a force with its point of action and its moment. An empty list stands for zero.
+/// Creates an applied force from its components, its point of application and an additional moment. An empty list for
+/// the point or the moment means zero.
 fn applied<S: Listed>(
     body: usize,
     force: &[f64],
@@ -229,7 +230,7 @@ impl Running {
         done.map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
-    /// Sets the state to that of another simulation of the same stack.
+    /// Sets the state to that of `to`, which must be a copy of this simulation.
     fn reset(&mut self, to: &Self) -> PyResult<()> {
         let same = match (&*self, to) {
             (Self::Plane(own), Self::Plane(other)) => own.is_clone_of(other),
@@ -410,8 +411,8 @@ impl Simulation {
         Ok((pairs, PyArray1::from_vec(py, rows).reshape([count, width])?))
     }
 
-    /// Returns the forces (N) between bodies by name; each force acts on the body that is named
-    /// first.
+    /// Returns the name of each pair of touching bodies, such as "R1 on ground", and the force (N) on the body that is
+    /// named first.
     fn forces<'py>(&self, py: Python<'py>) -> Vec<(String, Numbers<'py>)> {
         match &*lock(&self.running) {
             Running::Plane(one) => {
@@ -431,7 +432,8 @@ impl Simulation {
         }
     }
 
-    /// Returns name, force (N, positive in tension) and failure of every force element.
+    /// Returns the name and the force (N, positive in tension) of every force element, and `true` if the element is
+    /// broken.
     fn elements(&self) -> Vec<Element> {
         match &*lock(&self.running) {
             Running::Plane(one) => {
@@ -482,13 +484,13 @@ impl Simulation {
         Self { running, scenario: self.scenario.clone(), number: self.number }
     }
 
-    /// Sets the state to that of a copy.
+    /// Sets the state to that of `to`, which must be a copy of this simulation.
     fn reset(&self, to: &Self) -> PyResult<()> {
         let to = lock(&to.running).clone();
         lock(&self.running).reset(&to)
     }
 
-    /// Returns the result so far of a planar simulation; `None` in three dimensions.
+    /// Returns the result so far; `None` if the simulation is three-dimensional.
     fn result(&self, py: Python<'_>) -> Option<Run> {
         let Running::Plane(one) = lock(&self.running).clone() else { return None };
         py.detach(|| {
@@ -500,7 +502,7 @@ impl Simulation {
         })
     }
 
-    /// Returns the result so far of a three-dimensional simulation; `None` in a plane.
+    /// Returns the result so far; `None` if the simulation is planar.
     fn result_in_space(&self, py: Python<'_>) -> Option<SpatialRun> {
         let Running::Space(one) = lock(&self.running).clone() else { return None };
         py.detach(|| {
@@ -528,8 +530,8 @@ impl Simulations {
         PyArray1::from_vec(py, self.all.iter().map(|one| of(&lock(one))).collect())
     }
 
-    /// Returns an array with numbers of all bodies of all simulations; `pick` appends the numbers
-    /// of one simulation.
+    /// Returns an array of shape (simulations, bodies, `width`). `pick` appends the values of all bodies of one
+    /// simulation.
     fn stacked<'py>(
         &self,
         py: Python<'py>,
@@ -626,7 +628,7 @@ impl Simulations {
         self.numbers_of(py, |one| each!(one, one => one.time()))
     }
 
-    /// Returns the time (s) of the first loss of seat of every simulation; NaN if none was lost.
+    /// Returns the time (s) of the first loss of seat in every simulation; NaN for a simulation without one.
     fn collapses<'py>(&self, py: Python<'py>) -> Numbers<'py> {
         self.numbers_of(py, |one| {
             let time = match one {
@@ -677,7 +679,8 @@ impl Simulations {
         }
     }
 
-    /// Sets the state of the marked simulations to that of a copy.
+    /// Sets the state of each marked simulation to that of the same simulation in `to`, which must be a copy of these
+    /// simulations.
     fn reset(&self, to: &Self, marked: Vec<bool>) -> PyResult<()> {
         let all = self.all.iter().zip(&to.all).zip(marked);
         for ((own, other), _) in all.filter(|(_, marked)| *marked) {

@@ -119,8 +119,8 @@ impl SpatialRun {
         animated(py, of_run, (rate, between), across, |scene| player(run, scene))
     }
 
-    /// Writes the requested parts of the rendering. Returns the folder or file of each part, and its
-    /// number of files.
+    /// Writes the requested parts of the rendering, such as figures or an animation. Returns, for each part,
+    /// its folder or file and the number of files written.
     #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
     fn render(
         &self,

@@ -19,16 +19,16 @@ use crate::page::Page;
 use crate::record::{Record, of_motion};
 use crate::table::Table;
 
-/// A study of the library.
+/// Python handle of a `barrelstack_campaign::study::Study`.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Study {
     inner: Arc<study::Study>,
 }
 
-/// Name and text of a file.
+/// Name and content of a file.
 type NamedText = (&'static str, String);
 
-/// Facts of a chunk: number, number of cases, first and last case.
+/// A chunk: its number, its number of cases, its first case and its last case.
 type ChunkFacts = (usize, usize, u64, u64);
 
 impl Study {
@@ -131,13 +131,14 @@ fn report_cases(state: &ProgressState, now: &Progress) -> ControlFlow<()> {
     state.report((now.before + now.now) as f64, now.cases as f64, "cases")
 }
 
-/// Returns the name and the text of each bundled study.
+/// Returns the name and the content of each bundled study.
 #[pyfunction]
 pub(crate) fn studies() -> Vec<(&'static str, &'static str)> {
     study::builtin_names().filter_map(|name| Some((name, study::builtin(name)?))).collect()
 }
 
-/// Returns the finished rows in the folder of a study; with `write`, also writes its tables.
+/// Returns the finished rows of the study in a folder. If `write` is `true`, also writes the rows into the folder, as
+/// tables.
 #[pyfunction]
 pub(crate) fn read_table(py: Python<'_>, folder: PathBuf, write: bool) -> PyResult<Table> {
     let read = py.detach(|| {
@@ -177,7 +178,7 @@ pub(crate) fn decision(
 }
 
 /// Exports the fragility curves of the study that `folder` contains, in formats of other programs.
-/// Returns the name and the text of each file, and a list of the parts that cannot be exported.
+/// Returns the name and the content of each file, and a list of the parts that cannot be exported.
 #[pyfunction]
 pub(crate) fn export(
     py: Python<'_>,

@@ -40,7 +40,7 @@ pub(crate) struct Table {
     pub(crate) columns: Vec<Column>,
 }
 
-/// Facts of a column: name, unit, role, type, meaning.
+/// A column: its name, unit, role, type and meaning.
 type Facts = (String, String, String, String, &'static str);
 
 #[pymethods]

@@ -1,4 +1,4 @@
-//! NumPy arrays: views, which share memory with the library, and new arrays of rows.
+//! NumPy arrays: read-only views of memory that Rust objects own, and new two-dimensional arrays.
 
 use numpy::ndarray::ArrayView1;
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};

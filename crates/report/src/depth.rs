@@ -25,7 +25,7 @@ pub type Pose3 = [f64; 7];
 /// A solid in the frame of its body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Volume {
-    /// A surface of revolution.
+    /// A solid of revolution.
     Turned {
         /// Origin of the profile (m).
         at: Point3,
@@ -59,8 +59,8 @@ pub enum Volume {
 }
 
 impl Volume {
-    /// Returns a cuboid with sides along the axes of its body, from its center and its half sides
-    /// (m).
+    /// Returns a cuboid with edges along the axes of its body, from its center and half of each edge
+    /// length (m).
     pub fn upright(at: Point3, [x, y, z]: Point3) -> Self {
         Self::Block { at, sides: [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]] }
     }
@@ -136,7 +136,7 @@ pub struct Depth {
     pub ties: Vec<DepthTie>,
     /// Events, in order of time.
     pub events: Vec<Event>,
-    /// The instant at which the player opens.
+    /// The instant that the player shows when it opens.
     pub moment: Option<Moment>,
     /// With [`DepthPoses::Free`]: for each [`Trace`](crate::Trace) of the planar scene, the index of the body whose
     /// center it follows.

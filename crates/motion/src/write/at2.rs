@@ -1,6 +1,6 @@
 //! Writes PEER AT2 files: one component in g, five numbers per line.
 //!
-//! Spec: header lines of the NGA and NGA-West2 flat files, as in the reader.
+//! Spec: header lines of files from NGA and NGA-West2, with the sources stated in the reader, `format::peer`.
 
 use std::fmt::Write as _;
 
@@ -83,7 +83,9 @@ fn harmless(text: &str) -> String {
     broken.chars().map(|c| if c.is_ascii() { c } else { '?' }).collect()
 }
 
-/// Returns the channel name if it still states the direction, else the azimuth or `UP`.
+/// Returns the name of the component in the header. This is the channel name if [`Direction::parse`] derives the
+/// direction of the channel from it, otherwise the azimuth or `UP`. If the channel has no azimuth and is not known to
+/// be vertical, this is the channel name, cut to [`LONGEST_NAME`] characters.
 fn component(channel: &Channel) -> String {
     let name = harmless(&channel.name);
     let fits = !name.is_empty() && name.len() <= LONGEST_NAME;

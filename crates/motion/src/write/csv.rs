@@ -14,7 +14,7 @@ pub(crate) const FIRST_LINE: &str = "# acceleration (m/s2)";
 
 /// Writes a record as CSV.
 ///
-/// The text has comment lines that start with `#`, the header `time (s),NAME (m/s2),…`, and one row
+/// The file has comment lines that start with `#`, the header `time (s),NAME (m/s2),…`, and one row
 /// per sample. Accelerations have the fewest digits that read back to the same double; times are
 /// rounded to a nanosecond.
 ///
@@ -64,7 +64,8 @@ pub fn csv(record: &Record) -> Result<String, MotionError> {
     Ok(text)
 }
 
-/// Returns a text on one line, without words by which other formats are recognized.
+/// Prepares a string for a comment: joins it to one line, breaks up the words by which readers recognize other formats,
+/// and puts an apostrophe before each comma-separated part that is a formula ([`is_formula`]).
 fn plain(text: &str) -> String {
     let line = super::broken(&super::line(text), &super::FOREIGN);
     let cells = line

@@ -41,14 +41,15 @@ fn common(record: &Record) -> Result<(f64, usize), MotionError> {
     Ok((first.time_step, rows))
 }
 
-/// Returns the velocities (m/s) at the first samples, one per channel; `None` if all are zero.
+/// Formats the initial velocities (m/s) of all channels, separated by spaces; returns `None` if all are zero.
 fn initial_velocities(record: &Record) -> Option<String> {
     let some = record.channels.iter().any(|channel| channel.initial_velocity != 0.0);
     let all = record.channels.iter().map(|c| format!("{:e}", c.initial_velocity));
     some.then(|| all.collect::<Vec<_>>().join(" "))
 }
 
-/// Returns a text on one line, without control characters.
+/// Joins a string to one line: replaces each control character and each run of white space by one space, and trims both
+/// ends.
 fn line(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     plain.split_whitespace().collect::<Vec<_>>().join(" ")

@@ -37,7 +37,7 @@ use crate::direction::Orientation;
 use crate::error::MotionError;
 use crate::record::{Channel, Record};
 
-/// First line of the format.
+/// First line of every file in this format.
 pub(crate) const TITLE: &str = "# barrelstack motion 1";
 
 /// Writes a record in this crate's own text format. [`crate::read`] restores the accelerations and
