@@ -1,7 +1,6 @@
 //! Variants of a three-dimensional stack. They are sampled and evaluated like those of a plane model; in addition, the
 //! directions of falls are recorded.
 
-use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -255,8 +254,7 @@ fn run_all_of<T: Sync>(
         run_chunk(in_lanes, chunk, build, &mut finished, &stop);
         cases
     };
-    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
-    let size = items.len().div_ceil(threads).clamp(1, BATCH);
+    let size = items.len().div_ceil(pool::cores()).clamp(1, BATCH);
     // A few cases beyond full lanes run faster one after the other.
     let size = if size > LANES { size - size % LANES } else { size };
     let chunks: Vec<&[T]> = items.chunks(size).collect();

@@ -38,7 +38,8 @@ pub use work::{Share, Stage, Work};
 /// different versions are never combined.
 pub const VERSION: u32 = 13;
 
-/// Number of cases that a thread takes at once: enough to fill its lanes, few enough to leave work for all threads.
+/// Largest number of cases that a thread takes at once: enough to fill its lanes, few enough to leave work for all
+/// threads.
 const BATCH: usize = 32;
 
 /// Progress callback and cancellation of an ensemble.
@@ -119,7 +120,8 @@ impl Ensemble {
             let stop = || stopped.load(Ordering::Relaxed) || asked_to_stop();
             simulate_as_far(lanes, cases, &mut Audience { on_case: &mut report, stop: &stop })
         };
-        let batches: Vec<&[Prepared]> = self.cases.chunks(BATCH).collect();
+        let size = self.cases.len().div_ceil(pool::cores()).clamp(FEWEST, BATCH);
+        let batches: Vec<&[Prepared]> = self.cases.chunks(size).collect();
         pool::map(&batches, together, &|_| ()).concat()
     }
 }

@@ -4,6 +4,11 @@ use std::num::NonZero;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Returns the number of cores that this process may use; 1 if the system does not state it.
+pub fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, NonZero::get)
+}
+
 /// Runs all tasks on all cores and returns their results in the order of the tasks.
 ///
 /// Threads take the tasks in order, so long tasks should come first. The assignment of tasks to threads does not affect
@@ -36,7 +41,6 @@ pub fn map_on<T: Sync, R: Send>(
             done(finished.fetch_add(1, Ordering::Relaxed) + 1);
         }
     };
-    let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
     let threads = if threads == 0 { cores() } else { threads }.min(tasks.len());
     std::thread::scope(|scope| {
         for _ in 1..threads {

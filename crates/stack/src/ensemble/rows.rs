@@ -131,8 +131,7 @@ pub fn rows(
         let results: Option<Vec<CaseResult>> = made.into_iter().map(result).collect();
         Some(table(&results?))
     };
-    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let size = count.div_ceil(SHARE * cores).clamp(1, BATCH);
+    let size = count.div_ceil(SHARE * pool::cores()).clamp(1, BATCH);
     let batches: Vec<&[usize]> = order.chunks(size).collect();
     let parts: Option<Vec<Vec<Column>>> =
         pool::map(&batches, together, &|_| ()).into_iter().collect();
