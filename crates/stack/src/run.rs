@@ -78,7 +78,7 @@ pub struct Work {
     pub steps: u64,
     /// Number of force evaluations.
     pub evaluations: u64,
-    /// Number of contact elements tested in all evaluations.
+    /// Number of contact elements tested for contact, summed over all evaluations.
     pub contact_evaluations: u64,
 }
 
@@ -91,7 +91,8 @@ pub struct Progress {
     pub end_time: f64,
 }
 
-/// Duration (s) of the remaining motion above which a run counts as cut short.
+/// Maximum duration (s) of the ground motion that may be left at the end of a run; if more is left, the run counts as
+/// cut short.
 pub const CUT: f64 = 0.01;
 
 /// Maximum number of steps of a run; about 10⁵ steps of a stack are computed in a second.
@@ -200,14 +201,14 @@ impl Scenario {
 }
 
 impl Run {
-    /// Returns the duration (s) of the ground motion that remained when `run.duration` ended the run; `None` if nothing
-    /// remained.
+    /// Returns the duration (s) of the ground motion that was left when `run.duration` ended the run. Returns `None` if
+    /// at most [`CUT`] was left, or if the run ended for another reason.
     pub fn cut(&self) -> Option<f64> {
         cut(self.ending, self.ground.end(), self.end_time)
     }
 }
 
-/// Judges a planar run that ended at a time (s), and adds warnings about its end.
+/// Returns the verdict on a planar run that ended at `time` (s). The warnings include those of the ground motion.
 pub(crate) fn conclude(
     assembly: &Assembly,
     ground: &Ground,
@@ -225,7 +226,8 @@ pub(crate) fn conclude(
 
 /// Returns the time step (s) that a scenario sets; by default, a step that suits the stiffest contact.
 ///
-/// At another length scale, the step is the scaled step of the full-size stack, so that both runs are equivalent.
+/// The step in a scenario is the step of the full-size stack. At another length scale, it is multiplied by the time
+/// scale, so that the run is equivalent to the run at full size.
 ///
 /// # Errors
 /// If the step in the scenario is above the critical step, beyond which every explicit fixed-step method is unstable.
@@ -333,7 +335,9 @@ pub(crate) fn check_memory(
     check_kept(frame, (end_time * history_rate + 1.0, channels))
 }
 
-/// Checks the memory needed for the frames, which hold several numbers per body, and for the samples of the histories.
+/// Checks that the frames and the histories of a run fit into memory.
+///
+/// Each of the `frames` holds `numbers` values per body. Each of the `channels` histories has `samples` values.
 ///
 /// # Errors
 /// If the frames and histories take more than 2 GB.
@@ -368,8 +372,8 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
 }
 
 impl Run {
-    /// Returns the unit for which the contact constants are stated ([`Basis`]), such as "seat"; "mixed" if the contact
-    /// laws have different units.
+    /// Returns the name of the [`Basis`] of the contact constants, such as "seat"; "mixed" if the contact laws differ
+    /// in their basis.
     ///
     /// In a stack, only the contact laws of seats are considered; in a free scene, all contact laws.
     pub fn stiffness_basis(&self) -> &'static str {

@@ -8,14 +8,15 @@ use super::CUT;
 use crate::outcome::Outcome;
 use crate::watch::Ending;
 
-/// Largest accepted ratio of the energy residual to the energy that passed through the system. A run with a larger
-/// ratio is invalid.
+/// Maximum ratio of the energy residual to the energy that passed through the system; a run with a larger ratio is
+/// invalid.
 ///
-/// This is a hundred times the ratio that leads to a warning, and two thousand times the ratio with an adequate time
-/// step.
+/// A hundredth of this ratio leads to a warning ([`BOOKS_OPEN`]). With an adequate time step, the ratio is about 5e-5,
+/// two thousand times smaller.
 const BOOKS_BROKEN: f64 = 0.1;
 
-/// Ratio of the energy residual to the energy that passed through the system, above which a run has a warning.
+/// Maximum ratio of the energy residual to the energy that passed through the system; a larger ratio leads to a
+/// warning.
 const BOOKS_OPEN: f64 = 1e-3;
 
 /// Totals of a run that reached its end.
@@ -41,8 +42,10 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Judges a run that ended at `time` (s), and adds warnings about the end of the run. The ground motion ends at
-    /// `motion_end` (s).
+    /// Returns the verdict on a run that ended at `time` (s), with warnings about its energy balance and its end.
+    ///
+    /// The ground motion ends at `motion_end` (s). `judge` determines the outcome of a valid run that was not
+    /// interrupted.
     pub fn of(
         ended: Result<Ended, RunError>,
         judge: impl FnOnce() -> Outcome,
@@ -102,8 +105,8 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     })
 }
 
-/// Returns the duration (s) of the ground motion that remained when the stated duration ended a run; `None` if nothing
-/// remained.
+/// Returns the duration (s) of the ground motion that was left when `run.duration` ended a run. Returns `None` if at
+/// most [`CUT`] was left, or if the run ended for another reason.
 pub fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
     let left = motion_end - time;
     (ending == Ending::Duration && left > CUT).then_some(left)

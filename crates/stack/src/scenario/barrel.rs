@@ -32,8 +32,7 @@ named! {
 }
 
 impl Fill {
-    /// Returns the fraction of the capacity that is filled with wine; `filled` is this fraction for a partly filled
-    /// barrel.
+    /// Returns the fraction of the capacity that is filled with wine. For a partly filled barrel, this is `filled`.
     fn share(self, filled: f64) -> f64 {
         match self {
             Self::FullFrozen | Self::FullFluid => 1.0,
@@ -123,13 +122,14 @@ impl Barrel {
     /// transverse view, this is the moment about the axis of the barrel; in the longitudinal view, the moment about a
     /// transverse axis.
     ///
-    /// The wood is a shell of constant thickness with two heads, placed so that the volume between them is the
-    /// capacity. The mass of the contents is `mass` minus `empty_mass`. A frozen filling rotates with the wood. An
-    /// ideal fluid does not rotate about the axis, except for a layer at the wall that is half as thick as the Stokes
-    /// layer at 1 Hz. About a transverse axis, the effective moment of inertia of an ideal fluid is taken as
-    /// `(I_t - I_a)² / I_t`. This holds for the fluid in a spheroid with the same moments; `I_t` and `I_a` are the
-    /// transverse and the axial moment of the frozen filling (Lamb, Hydrodynamics, on the ellipsoidal shell filled with
-    /// liquid).
+    /// The wood is a shell of constant thickness with two heads. The volume between the heads is the capacity. The mass
+    /// of the contents is `mass` minus `empty_mass`.
+    ///
+    /// A frozen filling rotates with the wood; its moments about a transverse axis and about the axis of the barrel are
+    /// `I_t` and `I_a`. A fluid filling rotates about the axis of the barrel only in a layer at the wall, which is half
+    /// as thick as the Stokes layer at 1 Hz. About a transverse axis, a fluid filling has the effective moment
+    /// `(I_t - I_a)² / I_t` of an ideal fluid in a spheroid with the same `I_t` and `I_a` (Lamb, Hydrodynamics, on the
+    /// ellipsoidal shell filled with liquid).
     pub fn inertia(&self, view: View) -> f64 {
         let moments = self.moments();
         match view {
@@ -270,8 +270,8 @@ fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Returns the second moment of the volume (m⁵) of a layer of wine at the wall that is half as thick as the Stokes
-/// layer at 1 Hz.
+/// Returns the second moment of volume (m⁵), about the axis of the barrel, of a layer of wine at the wall. The layer is
+/// half as thick as the Stokes layer at 1 Hz.
 fn stokes_layer(half: f64, radius: impl Fn(f64) -> f64) -> f64 {
     /// Kinematic viscosity of wine (m²/s).
     const VISCOSITY: f64 = 1.6e-6;

@@ -104,7 +104,7 @@ pub const BARRELS: &[CatalogBarrel] = &[
 pub struct Seat {
     /// Stiffness (N/m).
     pub stiffness: f64,
-    /// Ratio of the speeds after and before the impact of a body with the mass `mass`.
+    /// Coefficient of restitution in an impact of a body with the mass `mass`.
     pub restitution: f64,
     /// Mass (kg) for which the restitution holds.
     pub mass: f64,
@@ -116,25 +116,27 @@ pub struct Seat {
 /// stiffer against tangential forces, which act in the surface of the staves.
 const STICK_ON_BARREL: f64 = 2.0;
 
-/// Ratio of the tangential to the normal stiffness of seats on the floor. Normal forces bend tubes that do not lie
-/// flat, while tangential forces act on steel in contact, which is far stiffer.
+/// Ratio of the tangential to the normal stiffness of seats on the floor. Tubes do not lie flat on a floor, so normal
+/// forces bend them. Tangential forces act where steel is in contact with the floor, which is far stiffer.
 ///
-/// Four is the largest ratio that needs no smaller time step. With this ratio, friction under five levels reverses
-/// early enough to act like rigid friction.
+/// Four is the largest ratio that does not require a smaller time step. With this ratio, friction under a stack of five
+/// levels reverses early enough to act like rigid friction.
 const STICK_ON_FLOOR: f64 = 4.0;
 
 /// Ratio of the tangential to the normal stiffness of seats on posts. The ratio is smaller than on the floor, because
-/// tangential forces turn light racks with the height of the posts as the lever arm.
+/// racks are light and tangential forces on them have the height of the posts as lever arm.
 ///
-/// With a ratio of four, racks on posts oscillate from one time step to the next in the model along the barrels: after
+/// With a ratio of four, racks on posts oscillate from one time step to the next in the longitudinal plane: after
 /// 0.05 s, the error of the energy balance is 1.4e-3. With a ratio of two, this error is 2e-12.
 const STICK_ON_POST: f64 = 2.0;
 
-/// Contact constants of the seats of a rack. Each constant is the median of its values in the variants of a stack.
-/// `validation/seats.md` derives the constants.
+/// Contact constants of the seats of a rack, derived in `validation/seats.md`.
+///
+/// If the variants of a stack draw a constant at random, the value here is the median.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seats {
-    /// Seat of a rack on a barrel: one rail on the crown of a barrel below, or one support of a cradle under a barrel.
+    /// Seat between a rack and a barrel: one rail on the crown of the barrel below it, or one support of a cradle under
+    /// the barrel that it carries.
     pub barrel: Seat,
     /// Seat of a rack on the ground: one end of a rail, or one foot.
     pub floor: Seat,
@@ -152,8 +154,7 @@ impl Seat {
     }
 }
 
-/// Seats of racks on barrels. The rails of these racks carry each barrel directly above the crowns on which the rails
-/// lie.
+/// Seats of racks that lie on barrels. Each rail carries its barrels directly above the crowns on which it lies.
 const ON_BARRELS: Seats = Seats {
     barrel: Seat::new(3e6, 70.0, STICK_ON_BARREL),
     floor: Seat::new(1e7, 10.0, STICK_ON_FLOOR),

@@ -189,7 +189,7 @@ table! {
     viscous = Kind::Table(&VISCOUS), Default::Nothing;
 }
 
-/// Returns the message that the columns of a body would have the same names as the columns of another body or of the
+/// Returns the error message for a body whose columns would have the same names as those of another body or of the
 /// ground.
 pub(super) fn clash(name: &str, column: &str) -> String {
     format!(
@@ -357,7 +357,7 @@ fn read_interfaces(
     Ok(interfaces)
 }
 
-/// Returns the kind, shape and nodes of every boundary that has the given kind.
+/// Returns every boundary of the given kind, as a tuple of its kind, shape and nodes.
 fn of_kind<'a>(
     bodies: &'a [FreeBody],
     kind: &'a str,

@@ -82,9 +82,9 @@ impl Scenario {
     /// its folder.
     ///
     /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`. The value is read as TOML;
-    /// a value that is not TOML is taken as text. List items are addressed by name (`body.block.mass`), and interfaces
-    /// by pair (`interface.block-ground.stiffness`). Both can also be addressed by number, counted from 1. `extends`
-    /// may name a built-in scenario only.
+    /// a value that is not valid TOML is taken as a string. List items are addressed by name (`body.block.mass`), and
+    /// interfaces by pair (`interface.block-ground.stiffness`). Both can also be addressed by number, counted from 1.
+    /// `extends` may name a built-in scenario only.
     ///
     /// ```
     /// use barrelstack_stack::scenario::Scenario;

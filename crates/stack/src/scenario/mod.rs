@@ -1,7 +1,7 @@
 //! Scenarios: bodies, ground motion and run settings.
 //!
-//! A scenario is a TOML text in which every quantity carries its unit. Reading it gives either plain data in SI units,
-//! fully checked, or one error with its place in the text.
+//! A scenario is a TOML document in which every quantity carries its unit. Reading a scenario returns either fully
+//! checked plain data in SI units, or one error with its place in the document.
 //!
 //! ```
 //! use barrelstack_stack::scenario::{Scenario, View};
@@ -111,7 +111,7 @@ pub mod error {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// Title, in one line.
+    /// Title, a single line.
     pub title: String,
     /// The bodies.
     pub scene: Scene,
@@ -203,7 +203,7 @@ impl Scenario {
         found.min_by_key(rank).map(|origin| sources.place(origin))
     }
 
-    /// Returns warnings about the text of the scenario, such as keys under a former name.
+    /// Returns warnings about the text of the scenario, for example about the use of a former key.
     pub fn warnings(&self) -> &[String] {
         &self.written.1
     }
@@ -225,7 +225,7 @@ impl Scenario {
     }
 
     /// Returns a quantity with its unit as the user wrote it, for the setting at `path`; `None` if the quantity was not
-    /// written as text.
+    /// written as a string.
     pub fn as_written(&self, path: &str) -> Option<&str> {
         if let tree::Value::Text(text) = &self.node(path)?.value { Some(text) } else { None }
     }
@@ -271,9 +271,9 @@ impl Scenario {
 
     /// Returns the fingerprint of the scenario without its title: the 64-bit FNV-1a hash of the resolved text.
     ///
-    /// Two scenarios with the same fingerprint describe the same run, however they were written. A record enters the
-    /// hash with its bytes if they are in memory ([`Scenario::with_records`]), as in every run, and otherwise with its
-    /// path as written.
+    /// Two scenarios with the same fingerprint describe the same run, however they were written. If the bytes of a
+    /// record are in memory ([`Scenario::with_records`]), the hash covers the bytes; otherwise, it covers the path as
+    /// written. In every run, the bytes are in memory.
     pub fn fingerprint(&self) -> u64 {
         let motion = self.motion.by_content();
         let untitled = Self { title: "-".to_owned(), motion, ..self.clone() };

@@ -145,7 +145,7 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
     Ok(rule)
 }
 
-/// Returns the approximate number of nodes of a boundary, which may be off by a few at the corners.
+/// Estimates the number of nodes of a boundary. Corners may change the actual number by a few nodes.
 pub(super) fn number(nodes: &Nodes, shape: Option<&Shape>) -> f64 {
     let sides = |shape: &Shape| match shape {
         Shape::Polygon { vertices } => vertices.len() as f64,

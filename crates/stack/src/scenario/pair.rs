@@ -10,15 +10,15 @@ use super::writer::Writer;
 
 /// Impact stiffness (N/m^1.5) of pairs that include a barrel, and of seats at the end of their stroke.
 ///
-/// With this stiffness, a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) is stopped within 15
-/// mm. This is an assumption, since no measurement is known. In cellars, barrels bounced clearly, burst and lost their
-/// bungs.
+/// With this stiffness, a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) is stopped within
+/// 15 mm. The value is an assumption, since no measurement is known. In earthquakes, barrels in cellars bounced
+/// clearly, burst and lost their bungs.
 const HEAVY: f64 = 1.2e9;
 
 /// Impact stiffness (N/m^1.5) between racks and from a rack to the ground.
 ///
-/// With this stiffness, a rack without barrels that falls from the top of six levels is stopped within 10 mm; several
-/// contacts of the rack share the load of a barrel that lands on it.
+/// With this stiffness, an empty rack that falls from the top of six levels is stopped within 10 mm. If a barrel lands
+/// on a rack, several contacts of the rack share the load.
 const LIGHT: f64 = 5e8;
 
 /// Declares the pairs: variant, field and name in files, then table, impact stiffness, default friction coefficient,

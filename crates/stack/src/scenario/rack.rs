@@ -60,8 +60,8 @@ named! {
 }
 
 impl SeatContact {
-    /// Returns the number of contact elements that one element of the model across the barrels represents. These
-    /// elements coincide in that plane, and each has the constants of a node.
+    /// Returns the number of contact elements that coincide in the transverse plane and are modeled there as one
+    /// element. Each of them has the constants of a node.
     pub fn behind_each_other(self) -> f64 {
         match self {
             Self::Nodes | Self::Element => 1.0,

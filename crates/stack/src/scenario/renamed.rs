@@ -1,7 +1,7 @@
-//! Keys of scenarios under their former names.
+//! Former keys of scenarios.
 //!
-//! Uncertain constants were once stated among the imperfections. Their keys are still read, with a warning that names
-//! the present key.
+//! Uncertain constants were once stated among the imperfections. Their former keys are still read, with a warning that
+//! names the current key.
 
 use super::error::{Problem, ScenarioError};
 use super::tree::{Entry, Node, Origin, Sources, Table, Value};
@@ -12,7 +12,7 @@ const FORMER: &str = "imperfections";
 /// Table that now holds the keys in [`MOVED`].
 const PRESENT: &str = "unknowns";
 
-/// Keys that moved from [`FORMER`] to [`PRESENT`] under the same name.
+/// Keys that moved from the table [`FORMER`] to the table [`PRESENT`] without a change of name.
 const MOVED: [&str; 6] = [
     "friction",
     "friction_barrel_rack",
@@ -29,13 +29,13 @@ const KIND: &str = "kind";
 const KINDS: [(&str, [bool; 2]); 3] =
     [("hair", [true, false]), ("ignorance", [false, true]), ("both", [true, true])];
 
-/// Replaces former keys by present ones. Returns a warning for each.
+/// Replaces former keys by current keys, and returns a warning for each former key.
 ///
-/// If a former key and the present key are stated in different layers, the key in the upper layer applies: overrides
+/// If a former key and the current key are stated in different layers, the key in the upper layer applies: overrides
 /// take precedence over the file, and the file over the files that it extends.
 ///
 /// # Errors
-/// If one file states a former key together with the present one, or gives `kind` an unknown value.
+/// If one file states a former key together with the current one, or gives `kind` an unknown value.
 pub(super) fn renew(table: &mut Table, sources: &Sources) -> Result<Vec<String>, ScenarioError> {
     let Some(Entry { node: Node { value: Value::Table(former), .. }, .. }) = table.get_mut(FORMER)
     else {

@@ -43,7 +43,7 @@ pub struct SpatialScene {
 /// Maximum number of bodies of a three-dimensional scene. The number is limited because all pairs of bodies are listed.
 const MOST_BODIES: usize = 500;
 
-/// Maximum number of pairs of solids of a three-dimensional scene; pairs without an interface also count.
+/// Maximum number of pairs of solids in a three-dimensional scene, including pairs that have no interface.
 const MOST_PAIRS: usize = 1_000_000;
 
 /// Returns the number of solids of a body.

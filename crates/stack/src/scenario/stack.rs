@@ -102,7 +102,7 @@ impl StackSpec {
 
     /// Returns the stack in the longitudinal plane only, if both planes are requested.
     ///
-    /// Overrides of single columns are dropped, since columns count across the barrels.
+    /// Overrides of single columns are dropped, because columns are numbered across the barrels.
     pub fn along(&self) -> Option<Self> {
         let columns = self.columns_along?;
         let mut along =
@@ -145,7 +145,7 @@ impl View {
         }
     }
 
-    /// Returns the direction as a phrase, such as "along the barrels".
+    /// Returns a phrase for the orientation of the plane, such as "along the barrels".
     pub fn words(self) -> &'static str {
         match self {
             Self::Transverse => "across the barrels",

@@ -42,7 +42,7 @@ impl Opened {
         Self::new(&name, &bytes, Access::Files)
     }
 
-    /// Parses a text in which `extends` may name built-in scenarios only.
+    /// Parses the text of a file, in which `extends` may name built-in scenarios only.
     ///
     /// # Errors
     /// If the text is not TOML.
@@ -113,11 +113,11 @@ pub struct Host {
 }
 
 impl Host {
-    /// Reads a file from its bytes, with the files that it extends, and applies overrides as for a scenario
+    /// Parses the bytes of a file, reads the files that it extends, and applies overrides as for a scenario
     /// ([`Scenario::parse`]).
     ///
     /// # Errors
-    /// Returns the first problem found, with its place in the text; also if the bytes are not UTF-8.
+    /// Returns the first problem found, with its place in the text. Bytes that are not UTF-8 are also an error.
     pub fn parse_file(
         path: &Path,
         bytes: &[u8],
@@ -129,10 +129,10 @@ impl Host {
         Ok(Self { sources, table })
     }
 
-    /// Reads a text like [`Host::parse_file`]; the text may extend built-in files only.
+    /// Parses the bytes of a file like [`Host::parse_file`], except that `extends` may name built-in files only.
     ///
     /// # Errors
-    /// As for [`Host::parse_file`].
+    /// Same as [`Host::parse_file`].
     pub fn parse(
         name: &str,
         bytes: &[u8],
@@ -174,7 +174,7 @@ impl Host {
         Ok(changed)
     }
 
-    /// Opens the whole file for reading.
+    /// Returns a reader of the top-level table of the file, with the fields of `section`.
     ///
     /// # Errors
     /// If the file has a key that `section` does not have.
@@ -330,7 +330,7 @@ impl Template {
         None
     }
 
-    /// Returns the texts of all files from which the scenario was read, in the order of reading.
+    /// Returns the contents of all files from which the scenario was read, in the order of reading.
     pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.sources.files.iter().map(|file| file.text.as_str())
     }

@@ -22,16 +22,17 @@ named! {
     }
 }
 
-/// Dissipation of a normal law, stated directly or by a restitution. The resulting restitution depends on the mass or
-/// the speed of the body that strikes.
+/// Dissipation of a normal law, stated as a damping coefficient or as a coefficient of restitution.
+///
+/// In either case, the restitution of an impact depends on the mass or the speed of the body that strikes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
-    /// `c` of a linear law (N·s/m per node or seat, N·s/m² per length of boundary), or `d` (s/m) of a Hunt-Crossley
-    /// law.
+    /// Damping coefficient: `c` of a linear law (N·s/m per node or seat, N·s/m² per length of boundary), or `d` (s/m)
+    /// of a Hunt-Crossley law.
     Coefficient(f64),
-    /// Damping that gives a restitution for a reference mass or speed.
+    /// Coefficient of restitution at a reference mass or speed, from which the damping coefficient follows.
     Restitution {
-        /// Ratio of normal speeds after and before an impact, in `(0, 1]`.
+        /// Coefficient of restitution: normal speed after an impact divided by normal speed before it, in `(0, 1]`.
         restitution: f64,
         /// For a linear law, the mass that strikes one node or seat (kg), or one meter of boundary (kg/m); for a
         /// Hunt-Crossley law, the impact speed (m/s).
@@ -69,7 +70,7 @@ pub enum NormalLaw {
     Rebound {
         /// `k` (N/m^1.5 per node or seat, or N/m^2.5 per length of boundary).
         stiffness: f64,
-        /// `e`, ratio of normal speeds after and before an impact, in `(0, 1]`.
+        /// Coefficient of restitution `e`: normal speed after an impact divided by normal speed before it, in `(0, 1]`.
         restitution: f64,
         /// `v` (m/s), the impact speed below which bodies come to rest.
         speed: f64,
@@ -109,7 +110,7 @@ pub enum Friction {
 /// Contact law between two kinds of bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interface {
-    /// Unit for which the stiffness and damping are stated.
+    /// Basis of the stiffness and damping: per node, per length of boundary or per seat.
     pub basis: Basis,
     /// Normal force.
     pub normal: NormalLaw,
@@ -117,11 +118,11 @@ pub struct Interface {
     pub friction: Friction,
 }
 
-/// Function from the restitution of a law to its damping ratio; `None` if no value of the damping gives the
+/// Function that converts the restitution of a law to its damping ratio; `None` if no damping ratio gives this
 /// restitution.
 type DampingRatio = fn(f64) -> Option<f64>;
 
-/// Function from the damping ratio of a law to its restitution.
+/// Function that converts the damping ratio of a law to its restitution.
 type Restitution = fn(f64) -> f64;
 
 impl Interface {

@@ -17,7 +17,7 @@ use super::{Basis, Damping, Friction, Interface, NormalLaw};
 /// (2008).
 const NODE: (f64, f64) = (980_000.0, 2200.0);
 
-/// Default contact constants of two kinds of bodies of a stack, for constants that the scenario leaves out.
+/// Default contact constants of a pair of a stack, used for the constants that the scenario leaves out.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scenario) struct PairDefaults {
     /// Constants of the seat, if the pair is a seat of a rack.
