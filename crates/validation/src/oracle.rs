@@ -53,7 +53,8 @@ impl Rocker {
 
     /// Takes one Runge–Kutta step.
     ///
-    /// The push is evaluated slightly inside the ends of the step, since it may be discontinuous at the ends.
+    /// The ground acceleration is evaluated slightly inside the ends of the step, since it may be discontinuous at the
+    /// ends.
     fn step(
         &self,
         (theta, spin): (f64, f64),
@@ -99,8 +100,8 @@ impl Rocker {
 
     /// Integrates the motion of the block under a ground acceleration (m/s²) that ends by `pushed_until` (s).
     ///
-    /// Every step is an integer fraction of `pushed_until`, and at most `longest` (s). If the outcome is still open
-    /// `patience` (s) after `pushed_until`, the block is judged by its rotation at that time.
+    /// All steps have the same length, which is `pushed_until` divided by an integer and is at most `longest` (s). If
+    /// the outcome is still open `patience` (s) after `pushed_until`, the block is judged by its rotation at that time.
     pub fn ride(
         &self,
         acceleration: impl Fn(f64) -> f64,
@@ -167,7 +168,7 @@ impl Rocker {
         }
     }
 
-    /// Returns the time (s) within a step at which a resting block is lifted.
+    /// Returns the time (s) within a step at which a resting block lifts off; `None` if the block stays at rest.
     fn uplift_within(&self, from: f64, until: f64, push: &impl Fn(f64) -> f64) -> Option<f64> {
         let inset = 1e-9 * (until - from);
         let lifts = |t: f64| push(t).abs() > self.uplift();

@@ -96,7 +96,7 @@ pub enum Failure {
     Absent(String),
 }
 
-/// Converts any error to a failure.
+/// Converts any error to [`Failure::Absent`].
 #[expect(clippy::needless_pass_by_value, reason = "as errors are mapped")]
 pub fn absent(reason: impl ToString) -> Failure {
     Failure::Absent(reason.to_string())
@@ -189,7 +189,8 @@ pub fn absolute(exact: f64, limit: f64) -> Reference {
 }
 
 impl Reference {
-    /// Returns the reference with a second limit, of the same kind, that applies at fast effort.
+    /// Returns the reference with its own limit at fast effort. The limit is relative or absolute, like that at full
+    /// effort.
     #[must_use]
     pub fn fast(self, limit: f64) -> Self {
         let fast = match self.tolerance {
@@ -200,7 +201,7 @@ impl Reference {
     }
 }
 
-/// A problem without its computation.
+/// A problem to which no computation has been added yet, created by [`Setting::quantity`].
 pub struct Question {
     setting: Setting,
     quantity: &'static str,

@@ -172,8 +172,8 @@ impl RockingBlock {
         Ok(swings)
     }
 
-    /// Returns the ratio of angular velocities at the first impact: the square root of the share of energy that
-    /// remains, computed from the next peak.
+    /// Returns the ratio of angular velocities at the first impact after a release at a rotation of `share · α`. The
+    /// ratio is the square root of the fraction of the energy that remains, computed from the next peak.
     ///
     /// # Errors
     /// If the block does not rock.

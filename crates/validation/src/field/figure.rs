@@ -1,4 +1,5 @@
-//! Figure of the hindcast of South Napa: the share of barrels on the floor, and friction before and after.
+//! Figure of the hindcast of South Napa: the share of barrels on the floor as a function of the friction of barrels on
+//! racks, and the prior and posterior densities of this friction.
 
 use barrelstack_report::{Axis, Figure, Mark, Panels, Plot, Series, SeriesStyle};
 

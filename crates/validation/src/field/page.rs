@@ -1,4 +1,4 @@
-//! The page of the hindcasts.
+//! Markdown page of the hindcasts.
 
 use std::fmt::Write as _;
 
@@ -73,7 +73,7 @@ some:     L(u) = E [1 − (1 − S)^stacks]
 
 ";
 
-/// Writes the page.
+/// Returns the page as Markdown.
 pub(super) fn page(observations: &Statements, cases: &[FieldCases], results: &Results) -> String {
     let mut text = HEAD.to_owned();
     in_short(&mut text, cases, results);
@@ -141,8 +141,8 @@ fn observed(text: &mut String, quake: &Earthquake) {
     }
 }
 
-/// Returns the words for the model of a study: "across" or "along" for the planes across and along the barrels, "in
-/// space" for three dimensions.
+/// Returns the phrase that describes the simulations of a study: "across" or "along" for simulations in the plane
+/// across or along the barrels, "in space" for three-dimensional simulations.
 fn view(study: &str) -> &'static str {
     match study.rsplit('-').next() {
         Some("across") => "across",
@@ -390,7 +390,8 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     );
 }
 
-/// Returns the mean likelihood of a statement if the barrel–rack friction lies in the bin whose lower edge is `from`.
+/// Formats the mean likelihood of a statement if the barrel–rack friction lies in the bin whose lower edge is `from`.
+/// Returns an empty string if there is no likelihood for this bin.
 fn likelihood(results: &Results, given: &str, from: f64) -> String {
     let is = |bin: &&Bin| bin.given == given && bin.unknown == 0 && bin.range[0] == from;
     results.bins.iter().find(is).map_or_else(String::new, |bin| format!("{:.2}", bin.likelihood))

@@ -1,4 +1,4 @@
-//! Numbers of the hindcasts: shares of stacks that fall, by study and height; posteriors of the unknowns; likelihoods
+//! Results of the hindcasts: shares of stacks that fall, by study and height; posteriors of the unknowns; likelihoods
 //! of the statements as functions of each unknown.
 
 use std::fmt::Write as _;
@@ -11,13 +11,13 @@ use super::chance::{MEDIANS, Point};
 use super::weigh::{self, Fitted, Range};
 use barrelstack_calibration::shares::{Earthquake, MODEL_ERROR, Statements};
 
-/// Edges of the bins of the barrel–rack friction; the page gives a likelihood for each bin.
+/// Bin edges of the barrel–rack friction; the page gives a likelihood for each bin.
 pub(super) const FRICTION: [f64; 7] = [0.12, 0.18, 0.25, 0.35, 0.45, 0.55, 0.75];
 
-/// Edges of the bins of the rack–ground friction.
+/// Bin edges of the rack–ground friction.
 pub(super) const GROUND: [f64; 5] = [0.30, 0.42, 0.50, 0.60, 0.85];
 
-/// Edges of the bins of the stiffness of a seat (MN/m).
+/// Bin edges of the seat stiffness (MN/m).
 pub(super) const STIFFNESS: [f64; 6] = [0.7, 1.5, 2.5, 4.0, 7.0, 13.0];
 
 /// Names of the unknowns.
@@ -41,11 +41,13 @@ pub struct Share {
     pub design: Interval,
     /// Fitted probability of a fall, averaged over the simulated cases.
     pub fitted: f64,
-    /// Probability of a fall with the medians of the catalog, under the unscaled record.
+    /// Probability of a fall if the unknowns have their medians in the catalog, under the unscaled record, averaged
+    /// over the azimuth.
     pub medians: f64,
     /// Mean and range of the probability of a fall over the prior.
     pub prior: Range,
-    /// Mean and range of the probability of a fall over the posterior, given the statement "half of the barrels".
+    /// Mean and range of the probability of a fall over the posterior, given the statement `half` (half of the barrels
+    /// are on the floor).
     pub posterior: Range,
     /// Mean share of fallen barrels in the stacks that fell.
     pub fallen: f64,
@@ -54,13 +56,14 @@ pub struct Share {
 /// Posterior ranges of the unknowns, given a set of statements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Posterior {
-    /// Names of the statements.
+    /// Name of the set of statements on which the posterior is conditioned, such as `prior` (no statement) or
+    /// `all statements`.
     pub given: String,
     /// Effective number of draws.
     pub effective: f64,
     /// Mean likelihood over the prior.
     pub evidence: f64,
-    /// The unknowns.
+    /// Posterior range of each unknown.
     pub unknowns: [Range; UNKNOWNS],
 }
 
@@ -73,32 +76,32 @@ pub struct Bin {
     pub unknown: usize,
     /// Lower and upper edge of the bin.
     pub range: [f64; 2],
-    /// Mean likelihood, 1 at most.
+    /// Mean likelihood, at most 1.
     pub likelihood: f64,
 }
 
-/// All numbers of the page.
+/// Results of the hindcasts, from which the page, its tables and its figure are made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Results {
     /// Shares by study and height.
     pub shares: Vec<Share>,
-    /// Posteriors, the prior first.
+    /// Posteriors given different sets of statements; the first one is the prior.
     pub posteriors: Vec<Posterior>,
     /// Mean likelihood of each statement, in each bin of each unknown.
     pub bins: Vec<Bin>,
     /// For each statement, its name and its predicted value, over the prior and over the posterior given the statement
-    /// "half".
+    /// `half`.
     pub predictions: Vec<(String, Range, Range)>,
-    /// For each value of the barrel–rack friction: the share of barrels on the floor, as mean and central 90 % over all
-    /// other unknowns.
+    /// For each value of the barrel–rack friction: the share of barrels on the floor, as mean and central 90 % interval
+    /// over all other unknowns.
     pub curve: Vec<(f64, Range)>,
     /// Densities of the barrel–rack friction per unit of ln μ: value of the friction, then its density in the prior,
-    /// given the statement "half", and given all statements.
+    /// given the statement `half`, and given all statements.
     pub densities: Vec<[f64; 4]>,
 }
 
 impl Results {
-    /// Computes all numbers.
+    /// Computes the results from the observations and the simulated cases.
     pub(super) fn of(observations: &Statements, cases: &[FieldCases]) -> Result<Self, FieldError> {
         let fitted: Vec<Fitted<'_>> = cases.iter().map(Fitted::new).collect();
         let (napa, _) = observations
@@ -146,7 +149,7 @@ impl Results {
             };
             let studies =
                 statement.studies.iter().map(study).collect::<Result<Vec<_>, FieldError>>()?;
-            // Each earthquake has its own factor on the motion.
+            // Each earthquake has its own scale factor of the motion.
             let own: Vec<[f64; UNKNOWNS]> = if quake.name == napa.name {
                 draws.to_vec()
             } else {
@@ -223,7 +226,8 @@ impl Results {
         self.posteriors.iter().find(|one| one.given == name)
     }
 
-    /// Returns the prediction of a statement, over the prior and over the posterior given the statement "half".
+    /// Returns the prediction of a statement, over the prior and over the posterior given the statement `half`; `None`
+    /// if there is no prediction.
     pub fn prediction(&self, id: &str) -> Option<(&Range, &Range)> {
         let found = self.predictions.iter().find(|(name, ..)| name == id);
         found.map(|(_, prior, posterior)| (prior, posterior))
@@ -289,19 +293,20 @@ impl Results {
 
 /// Weights of the draws.
 struct Weighed {
-    /// Weights given the statement "half".
+    /// Weights given the statement `half`.
     half: Vec<f64>,
     /// Weights given all statements.
     all: Vec<f64>,
-    /// Predicted share of barrels on the floor of Napa Barrel Care.
+    /// For each draw, the predicted share of barrels on the floor of Napa Barrel Care (the statement `half`).
     shares: Vec<f64>,
 }
 
 /// Number of draws from which shares by height are computed.
 const FEW: usize = 4000;
 
-/// Returns the shares of a study by height. `at_napa` is `true` for the station to which the drawn factors on the
-/// motion apply; at the other stations the factor is 1.
+/// Returns the shares of a study by height. `at_napa` is `true` for the station to which the drawn scale factors of the
+/// motion apply; at the other stations the factor is 1. `half` contains the weights of the draws given the statement
+/// `half`.
 fn shares(one: &Fitted<'_>, at_napa: bool, draws: &[[f64; UNKNOWNS]], half: &[f64]) -> Vec<Share> {
     let turn = |at: usize| std::f64::consts::TAU * (at as f64 / 64.0).fract();
     let own = |draw: &[f64; UNKNOWNS]| {

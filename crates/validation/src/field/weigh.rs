@@ -7,17 +7,18 @@ use super::chance::{Chance, FITS, MEDIANS, Point};
 use barrelstack_calibration::shares::{Kind, Likelihood, Statement};
 
 /// Standard deviations of the natural logarithms of the first three unknowns in the prior, the same as in `[unknowns]`
-/// of a scenario. The standard deviation for the fourth unknown, the factor on the motion, depends on the earthquake.
+/// of a scenario. The standard deviation for the fourth unknown, the scale factor of the motion, depends on the
+/// earthquake.
 const SPREADS: [f64; 3] = [0.35, 0.2, 0.6];
 
 /// Smallest and largest simulated value of each unknown. The prior is truncated to these ranges.
 pub(super) const RANGES: [[f64; 2]; UNKNOWNS] =
     [[0.12, 0.75], [0.30, 0.85], [0.7, 13.0], [0.5, 2.0]];
 
-/// Number of draws.
+/// Number of draws from the prior.
 pub(super) const DRAWS: usize = 20_000;
 
-/// A study with its fit.
+/// A study: its cases, and the probability of a fall that is fitted to them.
 #[derive(Clone, Debug)]
 pub(super) struct Fitted<'a> {
     /// Cases of the study.
@@ -30,7 +31,7 @@ pub(super) struct Fitted<'a> {
 }
 
 impl<'a> Fitted<'a> {
-    /// Fits a study.
+    /// Fits the probability of a fall to the cases of a study.
     pub(super) fn new(cases: &'a FieldCases) -> Self {
         Self {
             cases,
@@ -72,7 +73,7 @@ fn lognormal(median: f64, spread: f64, range: [f64; 2], random: &mut Random) -> 
 }
 
 /// Draws values of the unknowns from the prior. `motion` is the standard deviation of the natural logarithm of the
-/// factor on the motion.
+/// scale factor of the motion.
 pub(super) fn prior(motion: f64, seed: u64) -> Vec<[f64; UNKNOWNS]> {
     let mut random = Random::new(seed);
     (0..DRAWS)
@@ -85,9 +86,9 @@ pub(super) fn prior(motion: f64, seed: u64) -> Vec<[f64; UNKNOWNS]> {
         .collect()
 }
 
-/// Predicts, for each draw of the unknowns, the share (of barrels or of stacks) that a statement states. For each
-/// draw of the unknowns, an azimuth, a mixture of heights (all mixtures are equally probable) and coefficients of the
-/// fit are also drawn.
+/// Predicts, for each draw of the unknowns, the share (of barrels or of stacks) about which a statement was made. Each
+/// prediction also draws an azimuth, a mixture of heights (all mixtures are equally probable) and coefficients of the
+/// fit.
 pub(super) fn predicted(
     statement: &Statement,
     studies: &[&Fitted<'_>],
@@ -124,20 +125,20 @@ pub(super) fn weights(shares: &[f64], likelihood: Likelihood) -> Vec<f64> {
     shares.iter().map(|share| likelihood.of(*share)).collect()
 }
 
-/// Mean, median and central 90 % of a weighted sample.
+/// Mean, median and central 90 % interval of a weighted sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Mean.
     pub mean: f64,
     /// Median.
     pub median: f64,
-    /// Lower end of the central 90 %.
+    /// Lower end of the central 90 % interval.
     pub low: f64,
-    /// Upper end of the central 90 %.
+    /// Upper end of the central 90 % interval.
     pub high: f64,
 }
 
-/// Returns mean, median and the central 90 % of weighted values.
+/// Returns the mean, the median and the central 90 % interval of weighted values.
 pub(super) fn range(values: &[f64], weights: &[f64]) -> Range {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));

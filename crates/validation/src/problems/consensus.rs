@@ -127,7 +127,8 @@ fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
     }
 }
 
-/// Builds the scene from bodies, with cradle supports at ± an angle (degrees).
+/// Builds the scene of the eight barrels from individual bodies. The two supports of each cradle are at `degrees` to
+/// the left and right of the vertical.
 ///
 /// # Errors
 /// If the bodies do not form a valid model.
@@ -171,7 +172,8 @@ pub fn eight_barrels(degrees: f64) -> Result<Model<Planar>, ModelError> {
     Model::new(bodies, vec![law(0.5), law(0.22)], pairs, DOWN)
 }
 
-/// Returns `true` if a body of the scene is a rack; each rack is followed by its barrels.
+/// Returns `true` if the body with the index `body` is a rack. In the list of bodies, each rack is followed by its
+/// barrels.
 fn is_rack(body: usize) -> bool {
     body > 0 && body % 3 == 1
 }

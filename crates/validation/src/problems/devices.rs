@@ -46,12 +46,14 @@ pub(super) fn one_level(settings: &[String], motion: &str, seconds: f64) -> Resu
     Ok(scenario(settings, motion, seconds)?.run()?)
 }
 
-/// Runs the stack of [`scenario`] under a push (g) that grows for one second and is then constant for one second.
+/// Runs the stack of [`scenario`] under a push, which is a horizontal ground acceleration (g) that grows for one second
+/// and is then constant for one second.
 pub(super) fn pressed(settings: &[String], push: f64) -> Result<Run, Failure> {
     run_pushed(&scenario(settings, &self::push(push, 1.0), 1.99)?, push, 1000)
 }
 
-/// Runs a scenario under a push (g) that grows smoothly for a time (ms) and is then constant for one second.
+/// Runs a scenario under a push, which is a horizontal ground acceleration (g) that grows smoothly for a time (ms) and
+/// is then constant for one second.
 ///
 /// The growth is so smooth and the steps are so small that stiff elements do not vibrate.
 pub(super) fn run_pushed(scenario: &Scenario, push: f64, rise: u32) -> Result<Run, Failure> {
@@ -109,8 +111,8 @@ const BLOW: f64 = 0.05;
 /// Distance (m) from the center of a barrel to the center of the rounded end of a chock over which it rolls.
 const ARM: f64 = 0.5 * 0.645_918_367_346_938_8 + 0.015;
 
-/// Returns the smallest push (g) that makes a barrel roll over the chock on which it leans; the chock is at an angle
-/// (rad).
+/// Returns the smallest ground acceleration (g) that, applied for the time [`BLOW`], makes a barrel roll over the chock
+/// on which it leans; the chock is at an angle (rad).
 ///
 /// The rotation θ of the barrel about the end of the chock follows `L θ'' = g sin θ − a cos θ` during the impulse;
 /// after the impulse, the barrel must pass the energy barrier `g L (1 − cos θ)`.

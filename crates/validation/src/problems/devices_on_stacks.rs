@@ -27,21 +27,21 @@ const CRADLE: f64 = 28.0 * TAU / 360.0;
 /// Mass of a full barrel (kg).
 const BARREL: f64 = 46.0 + 990.0 * 0.225;
 
-/// Returns the push (g) under which a barrel leans on only one support of its cradle while a device holds the barrel
-/// down with a force (N): `N sin φ = m A`, `N cos φ = m g + F`.
+/// Returns the horizontal ground acceleration (g) under which a barrel leans on only one support of its cradle while a
+/// device holds the barrel down with a force (N): `N sin φ = m A`, `N cos φ = m g + F`.
 fn held_at(force: f64) -> f64 {
     tan(CRADLE) * (1.0 + force / (BARREL * GRAVITY))
 }
 
-/// Returns the force (N) that holds a barrel down on one support under a push (g). This function is the inverse of
-/// [`held_at`].
+/// Returns the force (N) that holds a barrel down on one support under a horizontal ground acceleration (g). This
+/// function is the inverse of [`held_at`].
 fn holding(push: f64) -> f64 {
     BARREL * GRAVITY * (push / tan(CRADLE) - 1.0)
 }
 
 const HELD: &str = "statics: F = m g (A/(g tan φ) − 1)";
 
-/// Contact stiffness that is so large that the penetration of the barrel into its support is negligible.
+/// Setting of a contact stiffness that is so large that the penetration of the barrel into its support is negligible.
 const HARD: &str = "interface.barrel-rack.stiffness=\"500 MN/m\"";
 
 fn lids() -> Vec<String> {
@@ -188,7 +188,8 @@ fn tie() -> Problem {
 /// Stiffness (N/m) of the springs of a platform with a tuned mass.
 const SPRINGS: f64 = 1e5;
 
-/// Simulates a platform on springs, with a tuned mass on the rack that the platform carries.
+/// Simulates a platform on springs, with a tuned mass on the rack that the platform carries. `motion` is the amplitude
+/// (g) and the duration (s) of a rectangular pulse of ground acceleration.
 fn with_mass(mass: f64, tuning: Tuning, motion: (f64, f64), seconds: f64) -> Result<Run, Failure> {
     let own = TAU / (tuning.frequency * (SPRINGS / ABOARD).sqrt());
     let mut settings = platform(SPRINGS);

@@ -24,8 +24,8 @@ fn fitted(stripes: &[Stripe]) -> Result<Fit, Failure> {
     fit(&evidence(stripes), Dispersion::Free).map_err(absent)
 }
 
-/// Creates the problem of one result of the fit to the eight stripes. The tolerance is half a unit of the last
-/// published digit.
+/// Creates the problem that compares one result of the fit to the eight stripes with the published number. The
+/// tolerance is half a unit of the last published digit.
 fn number(
     id: &str,
     quantity: &'static str,

@@ -110,7 +110,11 @@ fn decay(alpha: f64, impacts: usize) -> Problem {
     })
 }
 
-/// Returns, for the impact with a given number, its time (s) and the next peak rotation divided by α.
+/// Returns the time (s) of the impact with the number `impacts`, counted from 1, and the next peak rotation divided by
+/// α.
+///
+/// # Errors
+/// If fewer impacts occurred.
 fn nth(swings: &[(f64, f64)], impacts: usize) -> Result<(f64, f64), Failure> {
     swings.get(impacts - 1).copied().ok_or_else(|| {
         Failure::Absent(format!("only {} of {impacts} impacts occurred", swings.len()))

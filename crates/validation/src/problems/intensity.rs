@@ -1,4 +1,4 @@
-//! Intensity measures of motions with closed-form answers: a harmonic motion and a constant push.
+//! Intensity measures of motions with closed-form answers: a harmonic motion and a constant acceleration.
 
 use std::f64::consts::{PI, TAU};
 
@@ -73,7 +73,7 @@ fn push(step: f64) -> Result<Sampled, Failure> {
     sampled(step, vec![1.0; samples])
 }
 
-/// Returns the largest pseudo-acceleration, divided by the push: 1 + e^{−πζ/√(1−ζ²)}.
+/// Returns the largest pseudo-acceleration divided by the constant ground acceleration: 1 + e^{−πζ/√(1−ζ²)}.
 fn overshoot() -> f64 {
     1.0 + exp(-PI * DAMPING / (1.0 - DAMPING * DAMPING).sqrt())
 }

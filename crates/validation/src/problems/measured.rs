@@ -1,8 +1,8 @@
 //! Measured blocks: the granite blocks of Peña et al. on a shaking table.
 //!
-//! Sizes and rigid-body theory are exact; the measured ratios of angular velocities are not verified against the
-//! publication. The problems do not check the measurements. They check that the contact can be calibrated to a measured
-//! block.
+//! The sizes are exact, and the reference answers are exact solutions of rigid-body theory. The measured ratios of
+//! angular velocities have not been verified against the publication. The problems do not check the measurements. They
+//! check that the contact can be calibrated to a measured block.
 
 use barrelstack_dynamics::math::atan;
 
@@ -14,7 +14,8 @@ use super::housner::firm;
 
 const SOURCE: &str = "Peña, Prieto, Lourenço et al. 2007, blocks S1 to S3";
 
-/// Name, width (m), height (m) and measured ratio of angular velocities.
+/// Name, width (m) and height (m) of each block, and the measured ratio of its angular velocities after and before an
+/// impact.
 ///
 /// The ratio of S3, 0.978, is left out: it lies below Housner's 0.9787, the minimum for any damping.
 const BLOCKS: [(&str, f64, f64, Option<f64>); 3] =

@@ -58,7 +58,8 @@ fn leaning(alpha: f64, acceleration: impl Fn(f64) -> f64) -> impl Fn(f64, &[f64;
     }
 }
 
-/// Creates the problem of a block that rocks on one corner under one sine cycle of `push` g.
+/// Creates the problem of a block that rocks on one corner under one sine cycle of ground acceleration with the
+/// amplitude `push` (g).
 ///
 /// Depending on the parameters, the block stays near its unstable equilibrium or overturns.
 fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
@@ -292,8 +293,8 @@ fn flight() -> Problem {
     })
 }
 
-/// Returns the block of the problems with ensembles of records, in the form that the independent integrator of this
-/// crate uses.
+/// Returns the block that the problems of the module `statistics` subject to an ensemble of records, as a block of the
+/// independent integrator of this crate.
 fn rigid() -> Rocker {
     let alpha = 0.25;
     let restitution = theory::housner_restitution(alpha);

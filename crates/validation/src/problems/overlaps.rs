@@ -96,8 +96,8 @@ impl Survey {
     }
 }
 
-/// Returns those records of horizontal motion that may not be distributed with the program but are present in a folder
-/// next to the working copy.
+/// Returns the paths of those records of horizontal motion that must not be distributed with the program but are
+/// present in a folder next to the working copy.
 fn records() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
     [

@@ -49,8 +49,8 @@ impl Form {
     }
 }
 
-/// Boundaries in the table, in the order of increasing pulse strength: overturning starts, the block is safe again,
-/// the block overturns without an impact.
+/// Names of the published boundaries, in the order of increasing pulse strength: overturning starts, the block is safe
+/// again, the block overturns without an impact.
 const BORDERS: [&str; 3] = ["starts", "safe-again", "without-impact"];
 
 /// Returns the problems of this module.

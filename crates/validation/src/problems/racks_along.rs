@@ -17,8 +17,8 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Runs a stack in the plane along its barrels under a push (g) that grows for two seconds and is then constant for one
-/// second.
+/// Runs a stack in the plane along its barrels under a push, which is a horizontal ground acceleration (g) that grows
+/// for two seconds and is then constant for one second.
 ///
 /// The contacts are so stiff that almost nothing deforms.
 fn pushed(settings: &[String], push: f64) -> Result<Run, Failure> {
@@ -106,7 +106,7 @@ fn named(assembly: &Assembly, name: &str) -> Result<usize, Failure> {
 /// Length, diameter at the heads, and diameter at the bilge of the barrel (m).
 const BARREL: [f64; 3] = [0.945, 0.555, 0.690];
 
-/// Friction of the barrel on the supports of its cradles.
+/// Friction coefficient between the barrel and the supports of its cradles.
 const FRICTION: f64 = 0.2;
 
 /// Angle (degrees) of the supports of a cradle from the vertical, in the view along the barrel.
@@ -120,7 +120,8 @@ fn wedged() -> f64 {
     FRICTION / cos(CRADLE.to_radians())
 }
 
-/// Returns the smallest push (g) that makes a barrel slide on two rails that raise its right end by an angle (rad).
+/// Returns the smallest horizontal ground acceleration (g) that makes a barrel slide on two rails that raise its right
+/// end by an angle (rad).
 ///
 /// The barrel slides toward the right end or, with `side = -1`, away from it. The staves form an arc about a point C
 /// high above the barrel, so the barrel slides by rotating about C. The balance of forces is

@@ -79,7 +79,7 @@ fn once(
 /// Mass (kg) and speed (m/s) of the first block, gap (m), and stiffness (N/m) at each of the four corners of a face.
 const BLOCK: [f64; 4] = [50.0, 0.8, 0.05, 1e6];
 
-/// Duration (s) of the run of two blocks.
+/// Duration (s) of the runs in which two blocks collide.
 const POUNDING: f64 = 1.2;
 
 /// Returns a block on a smooth floor with a velocity (m/s).
@@ -101,7 +101,7 @@ fn block(velocity: f64) -> Result<Scenario, Failure> {
 /// Contact law of a wall that a block strikes.
 const SPRING: NormalLaw = NormalLaw::KelvinVoigt { stiffness: BLOCK[3], damping: 0.0 };
 
-/// Runs two blocks: the first strikes the second, which then crosses a second gap and comes back from a wall.
+/// Runs two blocks: the first strikes the second, which then crosses a second gap and rebounds from a wall.
 fn pounded() -> Result<RoomRun, Failure> {
     let [_, speed, gap, _] = BLOCK;
     let mut room = room(vec![
@@ -243,7 +243,7 @@ fn thrown_back() -> Result<RoomRun, Failure> {
     run(&room, 1)
 }
 
-/// Returns the force (N) of the rebound law at a depth (m) and its rate (m/s).
+/// Returns the force (N) of the rebound law at a penetration (m) and its rate (m/s).
 fn force([depth, rate]: [f64; 2]) -> f64 {
     let [stiffness, restitution, slow] = REBOUND;
     let back = restitution * restitution;
@@ -252,7 +252,7 @@ fn force([depth, rate]: [f64; 2]) -> f64 {
     spring * 0.5 * (1.0 + back + (1.0 - back) * share)
 }
 
-/// Returns the depth (m) of the barrel in the wall and its rate (m/s) at times (s) that do not decrease, from an
+/// Returns the penetration (m) of the barrel into the wall and its rate (m/s) at nondecreasing times (s), from an
 /// independent integration of `m x'' = -f(x, x')`.
 fn history(times: impl IntoIterator<Item = f64>) -> impl Iterator<Item = [f64; 2]> {
     let [mass, speed, gap, _] = BARREL;

@@ -1,4 +1,5 @@
-//! Solid bodies: no overlaps, falls that stop within millimeters, and smooth contact forces along boundaries.
+//! Solid bodies: no overlaps, impacts with penetrations of only millimeters, and smooth contact forces along
+//! boundaries.
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -186,7 +187,8 @@ fn two(
     Ok((model, state))
 }
 
-/// Returns the forces on the upper box: horizontal, vertical (N), moment (N m), and the number of contacts.
+/// Returns the forces on the upper box (horizontal and vertical force in N, moment in N m) and the number of contacts.
+/// If `swapped` is `true`, the upper box precedes the lower one in the list of bodies.
 fn forces_on(upper: Pose<Planar>, swapped: bool) -> Result<([f64; 3], usize), Failure> {
     let (model, state) = two(two_boxes(), upper, swapped)?;
     let mut scratch = Scratch::new(&model);
@@ -264,8 +266,8 @@ fn smooth() -> Problem {
 /// Displacement (m, rad) to either side in the central finite difference.
 const STEP: f64 = 1e-8;
 
-/// Creates the problem that the force must be the negative gradient of the elastic energy, at poses all around the
-/// lower body.
+/// Creates the problem that checks that the force is the negative gradient of the elastic energy, at poses all around
+/// the lower body.
 ///
 /// If force and gradient agree wherever two bodies press on each other, no path around a corner gains or loses energy.
 /// The quantity is the largest difference between the two in any of the three components, divided by the force.

@@ -50,8 +50,8 @@ fn firm(stiffness: f64, mass: f64) -> NormalLaw {
     NormalLaw::KelvinVoigt { stiffness, damping: restitution::damping(stiffness, 0.7, mass) }
 }
 
-/// Returns a friction law with a coefficient, with tangential (sticking) springs of a stiffness (N/m), and with
-/// damping suitable for a mass (kg).
+/// Returns a Coulomb friction law with a coefficient. Its tangential (sticking) spring has a stiffness (N/m), and its
+/// tangential damper has half the critical damping for a mass (kg).
 fn rough(coefficient: f64, stiffness: f64, mass: f64) -> FrictionLaw {
     coulomb(coefficient, stiffness, restitution::damping(stiffness, 0.5, mass))
 }
@@ -66,7 +66,7 @@ fn scene(
     Ok(Scene::new(bodies, interface(normal, friction), gravity)?)
 }
 
-/// Returns gravity straight down.
+/// Returns the acceleration of gravity (m/s²), which points straight down.
 fn down() -> Vec3 {
     Vec3::new(0.0, 0.0, -G)
 }

@@ -94,7 +94,7 @@ fn rolling(role: Role, friction: f64) -> Result<Scene<Spatial>, Failure> {
     scene(vec![ground, ball], firm(stiffness, MASS), friction, gravity)
 }
 
-/// Creates the problems of a ball that rolls for a long way as contactor or as target. The tangential spring of the
+/// Creates the problems of a ball that rolls a long distance as contactor or as target. The tangential spring of the
 /// contact then moves over the floor or over the surface of the ball, and the forces must be the same for both roles.
 fn carried(role: Role, friction: f64) -> [Problem; 3] {
     let (name, place) = match role {
