@@ -13,10 +13,10 @@ pub(crate) const REPORTS: &str = "crates/report/tests/browser/check.mjs";
 /// Path, in the repository, of the script that records the animation of the demo for the README.
 pub(crate) const FILM: &str = "crates/report/tests/browser/film.mjs";
 
-/// File to which the animation is written.
+/// Path, in the repository, of the animation that the README shows.
 const FILMED: &str = "docs/pictures/demo.gif";
 
-/// Path, in the repository, of the picture of the demo's page for the README.
+/// Path, in the repository, of the screenshot of the demo's report that the README shows.
 const PICTURED: &str = "docs/pictures/demo.png";
 
 /// Path, in the repository, of the script that checks the page of the engine.
@@ -78,7 +78,7 @@ impl Check {
         build_program(&self.root)
     }
 
-    /// Records the animation of the demo and the picture of its page for the README.
+    /// Records the animation of the demo, and takes a screenshot of its report, for the README.
     pub(crate) fn film(&self) -> anyhow::Result<ExitCode> {
         let mut command = self.command().map_err(anyhow::Error::msg)?;
         self.build()?;

@@ -1,4 +1,4 @@
-//! Packages of a release. One command makes each package, and the CI workflows call the same commands.
+//! Packages of a release. Each package has its own command, and the CI workflows call the same commands.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -117,7 +117,7 @@ fn require(target: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Builds the command for a target and packs it with licenses, completions and manual pages.
+/// Builds the command-line program for a target, and packs it with licenses, completions and manual pages.
 fn binary(root: &Path, triple: &str) -> anyhow::Result<()> {
     require(triple)?;
     let mut build = Command::new(cargo());
@@ -222,8 +222,10 @@ fn tools(root: &Path, name: &str, needed: &[&str]) -> anyhow::Result<PathBuf> {
     Ok(python)
 }
 
-/// Builds a wheel for a target, and checks its system requirements. The wheel has the stable interface and runs on
-/// every Python; with `free`, it is for this free-threaded interpreter, which does not have the stable interface.
+/// Builds a wheel for a target, and checks its system requirements.
+///
+/// By default, the wheel uses Python's stable ABI (abi3), so it is not tied to one version of Python. With `free`, the
+/// wheel is for this free-threaded interpreter, which does not support abi3.
 fn wheel(root: &Path, triple: &str, free: Option<&str>) -> anyhow::Result<()> {
     if triple != "universal2-apple-darwin" {
         require(triple)?;
@@ -289,7 +291,7 @@ fn wheels(root: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Tests the wheel for this system with some Python interpreters. For each interpreter, and for the oldest and the
+/// Tests the wheel for this system with the given Python interpreters. For each interpreter, and for the oldest and the
 /// newest supported version of numpy, installs the wheel into a new virtual environment and runs two examples of the
 /// package, one of them with two threads.
 fn try_wheel(root: &Path, pythons: &[&str]) -> anyhow::Result<()> {
@@ -423,7 +425,7 @@ fn image(root: &Path) -> anyhow::Result<()> {
     checked(&mut build, "the image, by docker or buildah")
 }
 
-/// Writes the SHA-256 of every file of the release, as `sha256sum --check` reads them.
+/// Writes the SHA-256 checksums of all files of the release, in the format that `sha256sum --check` reads.
 fn checksums(root: &Path) -> anyhow::Result<()> {
     const SUMS: &str = "\
 import hashlib, pathlib, sys
@@ -436,7 +438,7 @@ print(''.join(lines), end='')";
     checked(Command::new(python).args(["-c", SUMS]).arg(folder(root)), "the checksums")
 }
 
-/// Checks workflows, container file and scripts.
+/// Lints the workflows, the container file and the scripts.
 fn lint(root: &Path) -> anyhow::Result<()> {
     let python = tools(root, "linters", &LINTERS)?;
     let mut files = crate::lines::entries(&root.join(".github/workflows"))?;
@@ -458,7 +460,7 @@ fn lint(root: &Path) -> anyhow::Result<()> {
     checked(shellcheck.arg(root.join(".ci/run")), "shellcheck")
 }
 
-/// Checks the published crates with the oldest toolchain that they state.
+/// Checks that the published crates compile with the oldest toolchain that they support.
 fn oldest(root: &Path) -> anyhow::Result<()> {
     let mut check = of_oldest(&["cargo", "check", "--locked", "--package", "barrelstack"])
         .map_err(anyhow::Error::msg)?;
@@ -473,7 +475,7 @@ mod tests {
     use crate::USAGE;
     use crate::steps::root;
 
-    /// Beginnings of the commands that a workflow may run to prepare a machine or to publish. Every other command must
+    /// Prefixes of the commands that a workflow may run to prepare a machine or to publish. Every other command must
     /// be a task of `cargo xtask`.
     const PREPARES: [&str; 5] =
         ["rustup ", "cargo install --locked ", "bash .ci/run", "gh release ", "cargo publish "];

@@ -87,7 +87,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Returns the exit status of a completed task.
+/// Converts the `()` of a task that succeeded into its exit status.
 fn done((): ()) -> ExitCode {
     ExitCode::SUCCESS
 }
@@ -100,7 +100,9 @@ fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
     })
 }
 
-/// Runs a program of the workspace in the release profile with some arguments, and returns its exit status.
+/// Runs a program of the workspace in the release profile, and returns whether it succeeded.
+///
+/// `program` contains the arguments by which cargo selects the program; `words` are the arguments of the program.
 fn release(program: &[&str], words: &[&str]) -> ExitCode {
     let run = ["run", "--quiet", "--release"];
     match std::process::Command::new(steps::cargo())

@@ -1,4 +1,4 @@
-//! Builds the example programs in the READMEs of some crates without any compiled dependency, and measures the CPU
+//! Builds the example programs in the READMEs of some crates, each in an empty target folder, and measures the CPU
 //! time.
 
 use std::fs;
@@ -22,8 +22,9 @@ const PROGRAMS: [(&str, bool, f64); 4] = [
     ("stack", true, 90.0),
 ];
 
-/// Builds the program of each README in the dev profile without any compiled dependency, as a new user does, prints the
-/// CPU time, and runs the program.
+/// Builds the program of each README in the dev profile, prints the CPU time, and runs the program.
+///
+/// The target folder is empty at first, as for a new user, so the CPU time includes the dependencies.
 pub(crate) fn measure(root: &Path) -> anyhow::Result<()> {
     for (name, default, most) in PROGRAMS {
         let readme = fs::read_to_string(root.join("crates").join(name).join("README.md"))?;

@@ -1,4 +1,4 @@
-//! The Python package: built by pip in a virtual environment and tested there, and the site of its documentation.
+//! Builds the Python package with pip in a virtual environment, tests it there, and builds its documentation site.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -32,7 +32,8 @@ const TESTS: [&str; 21] = [
     "xarray",
 ];
 
-/// Packages that only research tasks of the site need; a task without its package is not executed.
+/// Packages that the research tasks on the documentation site import. A task is shown, but not executed, if a package
+/// that it imports is not installed.
 const RESEARCH: [&str; 6] = ["SALib", "joblib", "netCDF4", "scipy", "statsmodels", "xarray"];
 
 /// Packages that only the heavy tests need, because their installation takes long.
@@ -84,10 +85,10 @@ pub(crate) fn interpreter() -> Result<&'static str, String> {
     })
 }
 
-/// Builds the package and runs its tests, which build its site.
+/// Builds the package and runs its tests, which also build its documentation site.
 ///
-/// With `heavy`, the tests include those whose packages take long to install; with `site`, only the
-/// site is built.
+/// If `what` is `heavy`, also runs the tests whose packages take long to install. If `what` is `site`, builds the
+/// package and the site, and runs no tests.
 pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     let Some(python) = environment(root, what == Some("heavy"))? else {
         println!("skipped: pip cannot install maturin; is there a network connection?");

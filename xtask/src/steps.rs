@@ -56,7 +56,8 @@ const STEPS: [Step; 5] = [
         remedy: "see the failed tests above; they are listed again at the end of the step",
     },
     Step {
-        // With the package whose example writes the page of the engine, so that both builds share all features.
+        // `barrelstack-web` is selected, too, as in the build of its example `page`, so that both builds have the same
+        // features and share their dependencies.
         arguments: &[
             "test",
             "--release",
@@ -139,7 +140,8 @@ pub(crate) fn tests() -> anyhow::Result<()> {
 /// Compares the interfaces of the published crates with those of a git revision, by default the last release, and fails
 /// if the version number does not allow a difference.
 ///
-/// The step is skipped, with a line that states why, without cargo-semver-checks or without a release.
+/// Prints the reason and skips the comparison if cargo-semver-checks is not installed, or if no revision is given and
+/// there is no release.
 pub(crate) fn semver(revision: Option<&str>) -> anyhow::Result<()> {
     const TOOL: &str = "semver-checks";
     let there = Command::new(cargo()).args([TOOL, "--version"]).output();
@@ -165,10 +167,10 @@ pub(crate) fn semver(revision: Option<&str>) -> anyhow::Result<()> {
     bail!("the interfaces differ from those of {baseline}: raise the version, or undo the change")
 }
 
-/// Runs tests of unsafe code under Miri: the choice of a vector unit in `crates/dynamics/src/lanes/mod.rs`, and the
-/// AVX2 operations. Miri interprets code for x86-64 on any machine.
+/// Runs tests of unsafe code under Miri: the selection of the SIMD instruction set at run time in
+/// `crates/dynamics/src/lanes/mod.rs`, and the AVX2 operations. Miri interprets code for x86-64 on any machine.
 ///
-/// The other unsafe code calls the loader, Python and the browser, which Miri does not support.
+/// The other unsafe code interacts with the program loader, Python or the browser, which Miri does not support.
 pub(crate) fn miri() -> anyhow::Result<()> {
     for arguments in MIRI {
         let mut command = Command::new("cargo");

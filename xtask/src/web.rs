@@ -10,7 +10,7 @@ use anyhow::{Context as _, bail, ensure};
 use crate::extra::OLDEST;
 use crate::steps::{cargo, target};
 
-/// Target triple of browsers.
+/// Target triple of the engine, which runs in browsers.
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Functions that the page provides; the engine may import no others.
@@ -84,7 +84,7 @@ impl Build {
             megabytes(&bytes),
             imported.join(", ")
         );
-        // The packages of the test of results in the release profile, whose builds this one shares.
+        // The same packages as for the test `bits` in the release profile, so that both builds share dependencies.
         let packages = ["--package=barrelstack-library", "--package=barrelstack-web"];
         let mut build = Command::new(cargo());
         build.args(["build", "--quiet", "--release", "--example=page"]).args(packages);
@@ -132,7 +132,7 @@ fn megabytes(bytes: &[u8]) -> f64 {
     bytes.len() as f64 * 1e-6
 }
 
-/// Returns `true` if the standard library for browsers is installed.
+/// Returns `true` if the standard library of [`TARGET`] is installed.
 fn has_target() -> bool {
     let found = said(Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]));
     found.is_some_and(|folder| Path::new(&folder).is_dir())
@@ -207,7 +207,7 @@ fn number(bytes: &mut &[u8]) -> Option<usize> {
     None
 }
 
-/// Reads text that is preceded by its length.
+/// Reads a UTF-8 string that is preceded by its length in bytes.
 fn word(bytes: &mut &[u8]) -> Option<String> {
     let length = number(bytes)?;
     let (text, after) = bytes.split_at_checked(length)?;

@@ -7,12 +7,13 @@ use barrelstack_dynamics::{Space, State, Still};
 use crate::Failure;
 use crate::scene::Scene;
 
-/// Returns the time (s) of the zero crossing between two pairs of time and value, by linear interpolation.
+/// Returns the time (s) of the zero crossing between two samples, each a pair of time (s) and value, by linear
+/// interpolation.
 pub fn crossing(before: (f64, f64), now: (f64, f64)) -> f64 {
     before.0 + before.1 / (before.1 - now.1) * (now.0 - before.0)
 }
 
-/// Returns the times (s) at which a quantity changes its sign, from pairs of time (s) and value.
+/// Returns the times (s) at which a quantity changes sign, from its samples as pairs of time (s) and value.
 pub fn crossings(values: &[(f64, f64)]) -> Vec<f64> {
     let changes = values.windows(2).filter(|pair| pair[0].1 * pair[1].1 < 0.0);
     changes.map(|pair| crossing(pair[0], pair[1])).collect()

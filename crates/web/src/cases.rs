@@ -43,7 +43,7 @@ enum Ended {
 }
 
 impl Case {
-    /// Converts a result.
+    /// Reduces a result to the data that a verdict needs.
     pub fn of(result: &CaseResult) -> Self {
         Self {
             outcome: match result.outcome.clone() {

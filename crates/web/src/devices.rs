@@ -27,7 +27,7 @@ struct DeviceTable {
 #[derive(Serialize)]
 struct Candidate {
     device: &'static str,
-    /// Description of the setting.
+    /// Description of the setting, in the language of the answer.
     name: String,
     /// Changes to the scenario, such as `stack.lid.levels=1`.
     changes: Vec<String>,

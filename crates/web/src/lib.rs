@@ -16,8 +16,8 @@
 //!
 //! | export | purpose |
 //! |---|---|
-//! | `room(length) -> address` | allocates a request, which the page then writes there |
-//! | `run() -> status` | handles the request; 0 if done, 1 if refused (the answer then states the reason) |
+//! | `room(length) -> address` | allocates `length` bytes, to which the page then writes the request |
+//! | `run() -> status` | handles the request; 0 on success, 1 if refused (the answer then states the reason) |
 //! | `answer() -> address` | address of the answer, until the next call of `room` |
 //! | `answer_length() -> length` | length of the answer in bytes |
 //!
@@ -32,8 +32,8 @@
 //! ([`RequestKind::Verdict`]). The combined results are bit-identical to those of a single engine
 //! that runs all variants.
 //!
-//! A request states the language of its answer. The module contains the catalogs of other languages
-//! than English only if it is built with the feature `languages`, which makes it larger.
+//! A request states the language of its answer. The module contains translations of the English messages only if it is
+//! built with the feature `languages`, which makes it larger.
 
 mod cases;
 mod devices;
@@ -78,8 +78,8 @@ pub enum RequestKind {
     /// then the bytes of motions that are combined from several files. The request needs no
     /// scenario.
     Records,
-    /// The moving picture of a variant and its result, as JSON. The first entry of `numbers` selects the variant; 0 is
-    /// the stack as stated.
+    /// The animation of a variant and its result, as JSON. The first entry of `numbers` selects the variant; 0 is the
+    /// nominal case.
     Show,
     /// The results of the variants `numbers` in each plane, as JSON; then the paths of their barrels (the trails) as
     /// bytes, for a report.
@@ -92,7 +92,7 @@ pub enum RequestKind {
     /// The report of a run and its variants, as a page.
     Report,
     /// All files that the command-line program writes for a run and its variants, including the
-    /// report, encoded like a request: the head lists the names and lengths of the files, and their
+    /// report, encoded like a request: the JSON lists the names and lengths of the files, and their
     /// bytes follow. If the results of all variants are given, no variant is run again.
     Files,
 }
@@ -119,7 +119,7 @@ pub struct Request {
     /// The records provided: the path by which the scenario refers to each, and its length in bytes.
     #[serde(default)]
     pub records: Vec<(String, usize)>,
-    /// Numbers of variants.
+    /// Numbers of the variants to which the request refers; 0 is the nominal case.
     #[serde(default)]
     pub numbers: Vec<u32>,
     /// Results of the variants `numbers`, in each plane.
@@ -141,12 +141,12 @@ impl Request {
 
     /// Encodes the request, followed by its records in order.
     pub fn to_bytes(&self, records: &[&[u8]]) -> Vec<u8> {
-        // Serialization fails only for maps with keys other than text, and there are none.
+        // Serialization fails only for maps with keys that are not strings, and there are none.
         enveloped(&serde_json::to_vec(self).unwrap_or_default(), records)
     }
 }
 
-/// Encodes the length of a head, followed by the head and by further bytes.
+/// Concatenates the length of `head` (four bytes, little-endian), `head`, and the byte strings in `rest`.
 fn enveloped(head: &[u8], rest: &[&[u8]]) -> Vec<u8> {
     let length = u32::try_from(head.len()).unwrap_or(u32::MAX);
     [&length.to_le_bytes(), head, &rest.concat()].concat()
@@ -185,8 +185,8 @@ pub fn answered(
 /// Text in an error message that precedes the list of valid keys or names.
 const VALID: &str = "valid here: ";
 
-/// Translates a message line by line. Not translated are places in files, quoted lines of the scenario (which follow
-/// a `|`), and lists of valid keys.
+/// Translates a message line by line. Positions in files, quoted lines of the scenario (which follow a `|`), and lists
+/// of valid keys are not translated.
 fn refused(message: &str, language: Language) -> String {
     let line = |line: &str| {
         let start = line.find(|c: char| c.is_alphabetic() || c == '`').unwrap_or(line.len());
@@ -297,7 +297,7 @@ fn some(
     Ok(enveloped(&json(&cases)?, &[&trails::written(trails)]))
 }
 
-/// The moving picture of a variant, with its result.
+/// The animation of a variant, with its result.
 #[derive(Serialize)]
 struct Shown<'a> {
     variant: u32,

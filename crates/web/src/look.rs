@@ -1,4 +1,4 @@
-//! A scenario with all defaults, as a page shows it before a run; and the catalog.
+//! A scenario with all defaults filled in, as a page shows it before a run; and the catalog.
 
 use barrelstack::check::{Checked, check};
 use barrelstack::motion::GroundMotion;
@@ -38,7 +38,7 @@ impl Catalog {
     }
 }
 
-/// A scenario with all defaults, as a page shows it before a run.
+/// A scenario with all defaults filled in, as a page shows it before a run.
 #[derive(Serialize)]
 pub(crate) struct Looked {
     title: String,
@@ -73,7 +73,7 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
                     absent(list, present, &path, inner);
                 }
             }
-            // The title and other texts at the top level do not affect a run.
+            // The title and other strings at the top level do not affect a run.
             None if path.contains('.') && !present.contains(&path) => list.push(Stated {
                 path,
                 value: String::new(),
@@ -85,13 +85,15 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
     }
 }
 
-/// Fraction of the peak acceleration above which ground motion counts as strong; the same as in the
-/// player of a report.
+/// Fraction of the peak acceleration above which ground motion counts as strong. The player of a report uses the same
+/// fraction.
 const STRONG: f64 = 0.1;
-/// Duration (s) from the start of the strong ground motion to the end of the part of a run that a page shows first.
+/// Time (s) from the start of the strong ground motion to the end of the first part of a run, before rounding
+/// ([`opening`]).
 const IN_PROGRESS: f64 = 3.0;
 
-/// Returns the end (s) of the first part of a run, which a page shows while it computes the whole run.
+/// Returns the end (s) of the first part of a run, rounded up to a whole second. A page shows this part while it
+/// computes the whole run.
 fn opening(motion: &GroundMotion) -> f64 {
     let limit = STRONG * motion.pga();
     let mut time = 0.0;

@@ -31,7 +31,7 @@ pub(crate) extern "C" fn room(length: usize) -> *mut u8 {
     })
 }
 
-/// Handles the request; returns 0 if the request was done and 1 if it was refused.
+/// Handles the request; returns 0 on success, and 1 if the request is refused.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn run() -> u32 {
     let request = REQUEST.with(RefCell::take);

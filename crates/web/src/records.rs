@@ -56,8 +56,10 @@ struct Refused {
 /// Maximum number of channels of one record.
 const COMPONENTS: usize = 3;
 
-/// Reads and groups files; returns the groups, and the bytes of motions combined from several
-/// files.
+/// Reads record files and groups them into motions.
+///
+/// Returns the motions, with the files that contain no motion, and the bytes of the combined file of each motion. The
+/// bytes are empty if the motion is one of the given files.
 pub(crate) fn of(
     files: &BTreeMap<String, &[u8]>,
     reading: &Reading,
@@ -91,7 +93,8 @@ pub(crate) fn of(
     Ok((found, gathered))
 }
 
-/// Returns the instruments in a station file, if the file contains nothing else.
+/// Returns the instruments that a `StationXML` file describes; `None` if the file is not XML or describes no
+/// instrument.
 fn station(bytes: &[u8]) -> Option<Vec<Instrument>> {
     let text = std::str::from_utf8(bytes).ok().filter(|text| text.trim_start().starts_with('<'))?;
     station_xml(text).ok().filter(|found| !found.is_empty())
@@ -99,9 +102,9 @@ fn station(bytes: &[u8]) -> Option<Vec<Instrument>> {
 
 /// Groups records into motions.
 ///
-/// Records form one motion if they are compatible and together have at most as many components as
-/// one record. Otherwise they are grouped by file name, as in a folder, and files that do not fit
-/// together stay separate.
+/// Records form one motion if they are compatible and together have at most [`COMPONENTS`] channels. If all records
+/// together do not form one motion, they are grouped by file name ([`group_files`]). The records of a group that does
+/// not form one motion stay separate.
 fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
     let whole = |records: &[Record]| {
         records.iter().map(|record| record.channels.len()).sum::<usize>() <= COMPONENTS
@@ -125,8 +128,10 @@ fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
 }
 
 impl Motion {
-    /// Combines the files of one record. A single file is kept as it is, unless `described` is set; the record then
-    /// includes data of station files, so it is written to a new file.
+    /// Returns the motion of compatible records, and the bytes of a file that combines them.
+    ///
+    /// `described` is `true` if station files describe the records. Otherwise, a single record needs no new file, since
+    /// the given file contains all its data; the bytes are then empty.
     fn of(records: &[Record], described: bool) -> Result<(Self, Vec<u8>), String> {
         let files: Vec<String> = records.iter().map(|record| record.file.clone()).collect();
         let said = |record: &Record| -> Vec<String> {

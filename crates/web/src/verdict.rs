@@ -13,7 +13,7 @@ use crate::{Case, Request, trails};
 pub(crate) struct Verdict {
     /// Verdict in one sentence.
     headline: String,
-    /// Markup of the sign and the word of the verdict.
+    /// HTML that shows the verdict as a symbol and a word.
     badge: String,
     tone: &'static str,
     /// Verdict in each plane.
@@ -57,7 +57,7 @@ impl Verdict {
     }
 }
 
-/// Returns the results in a request; the first is the nominal case.
+/// Returns the results in a request, one list for each plane. The first result of a list is that of the nominal case.
 fn given(planes: &[Plane], request: Request) -> Result<Vec<Vec<CaseResult>>, String> {
     let Request { numbers, cases, .. } = request;
     let whole = cases.iter().all(|plane| plane.len() == numbers.len());
