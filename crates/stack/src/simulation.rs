@@ -23,9 +23,9 @@ use crate::watch::{
 
 /// A run of a scenario in a plane, which advances by any number of steps.
 ///
-/// [`Scenario::run`] is a simulation that is run to its end, so the results of both are bit-identical. A clone has the
-/// complete state: positions, velocities, friction springs, history of devices, recordings and stop criteria. It
-/// continues with bit-identical results. Clones share the stack and the ground motion.
+/// [`Scenario::run`] runs a simulation to its end, so the results of both are bit-identical. A clone has the complete
+/// state: positions, velocities, friction springs, history of devices, recordings and stop criteria. It continues with
+/// bit-identical results. Clones share the stack and the ground motion.
 ///
 /// ```
 /// use barrelstack_dynamics::{Applied, Vec2};

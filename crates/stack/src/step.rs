@@ -31,8 +31,8 @@ pub const IMPACT_SHARE: f64 = 0.4;
 /// Penetration up to which steps are not divided in impacts, as a fraction of `REFERENCE`; the penetration of resting
 /// contacts is smaller.
 ///
-/// With this value, the energy residual of the demo along the barrels is 1.1e-5; with a value four times as large, it
-/// is 2.4e-4.
+/// With this value, the energy residual of the demo scenario in the view along the barrels is 1.1e-5; with a value four
+/// times as large, it is 2.4e-4.
 pub const WHOLE_STEP: f64 = 0.05;
 
 /// Largest time step as a fraction of the critical time step at the penetration [`WHOLE_STEP`], including tangential
@@ -43,28 +43,30 @@ pub const WHOLE_STEP: f64 = 0.05;
 /// square root of the penetration.
 pub const WHOLE_STEP_SHARE: f64 = 0.7;
 
-/// Load on the lightest body through impact contacts, divided by the weight of the heaviest body.
+/// Assumed load on the lightest body through its impact contacts, divided by the weight of the heaviest body.
 const LOAD: f64 = 3.0;
 
-/// Largest time step as a fraction of the time in which impact contacts under [`LOAD`] stop the lightest body.
+/// Largest time step as a fraction of the time 1/γ in which the damping of impact contacts under [`LOAD`] stops the
+/// lightest body.
 ///
 /// The damping of these contacts grows with the load. With longer steps, heaps of racks under barrels do not come to
 /// rest.
 const LOADED_SHARE: f64 = 1.4;
 
-/// Time step during a contact with a stated restitution, as a fraction of the critical time step of the contact.
+/// Time step during a contact whose damping is specified by a restitution, as a fraction of the critical time step of
+/// the contact.
 ///
-/// The damper of the contact engages abruptly within a step, which causes an error of first order. With this fraction,
-/// a restitution of 0.7 is reproduced within 0.002, and a restitution of 0.3 within 0.003, apart from the work of
-/// gravity during the contact.
+/// The damper of the contact engages abruptly within a step, which causes a first-order error. With this fraction, a
+/// restitution of 0.7 is reproduced within 0.002, and a restitution of 0.3 within 0.003, apart from the work of gravity
+/// during the contact.
 const RESTITUTION_SHARE: f64 = 0.005;
 
-/// Gap (m) at full scale within which closing contacts with a stated restitution are detected in advance: enough for a
-/// closing speed of 40 m/s at steps of 1 ms.
+/// Gap (m) at full scale within which closing contacts are detected in advance if their damping is specified by a
+/// restitution. The gap is sufficient for a closing speed of 40 m/s at steps of 1 ms.
 const FORESEEN_REBOUND: f64 = 0.05;
 
-/// Radius (m) above which an arc of a boundary counts as nearly straight. The first value is for contacts with
-/// constants per seat, the second for other contacts.
+/// Radius (m) above which an arc of a boundary counts as nearly straight. The first value is for contacts whose
+/// stiffness and damping are given per seat ([`Basis::Seat`]), the second for other contacts.
 ///
 /// The lever arms of arcs with a smaller radius, such as the staves in the cases of Candia, de la Llera and Almazán
 /// (2008), are overestimated by a factor of up to four.
@@ -124,12 +126,13 @@ impl TimeStepping {
     }
 }
 
-/// Largest tolerance at which the adaptive method, whose steps are not divided, reproduces a stated restitution.
+/// Largest tolerance at which the adaptive method reproduces a specified restitution.
 ///
-/// At this tolerance, the motion is within 1 % of the exact motion; at 1e-3, the error is 4 %.
+/// The steps of this method are not divided during impacts. At this tolerance, the motion is within 1 % of the exact
+/// motion; at a tolerance of 1e-3, the error is 4 %.
 const KEEPS_RESTITUTION: f64 = 1e-6;
 
-/// Returns a warning if the adaptive method is too inaccurate for the restitution that a free scene states.
+/// Returns a warning if the adaptive method is too inaccurate for a restitution that is specified in a free scene.
 pub fn restitution_warning(scenario: &Scenario) -> Option<String> {
     let Method::BogackiShampine { tolerance } = scenario.run.method else { return None };
     let laws = match &scenario.scene {
@@ -146,8 +149,8 @@ pub fn restitution_warning(scenario: &Scenario) -> Option<String> {
     })
 }
 
-/// Divides the steps of a free scene while contacts with a stated restitution are closed or about to close, so that the
-/// contacts reproduce this restitution.
+/// Divides the steps of a free scene while contacts whose damping is specified by a restitution are closed or about to
+/// close, so that these contacts reproduce the restitution.
 ///
 /// `step` is the time step (s), `critical` returns the critical time step (s) of the contacts of an interface at a
 /// penetration (m), and `time_scale` is the time scale of similitude.
@@ -175,14 +178,15 @@ pub(crate) fn critical_of_interface(model: &Model<Planar>, depth: f64, interface
     critical(model, 0.0, depth, &|pair| pair.interface == interface)
 }
 
-/// Returns `true` if a pair touches in impacts only, and carries little load between impacts.
+/// Returns `true` if a pair has impact contacts: contacts with [`NormalLaw::Rebound`] whose nodes are not fixed. These
+/// contacts carry little load between impacts.
 fn is_impact(model: &Model<Planar>, pair: &ContactPair) -> bool {
     let law = &model.interfaces()[pair.interface].normal;
     let nodes = &model.bodies()[pair.contactor].nodes[pair.nodes];
     matches!(law, NormalLaw::Rebound { .. }) && !matches!(nodes, Nodes::Fixed(_))
 }
 
-/// Returns the rate (1/s) at which impact contacts stop the lightest body of a pair under [`LOAD`].
+/// Returns the rate γ (1/s) at which the damping of impact contacts under [`LOAD`] stops the lightest body.
 fn loaded(model: &Model<Planar>) -> f64 {
     let bodies = model.bodies().iter().filter(|body| body.motion == Motion::Free);
     let heaviest = bodies.map(|body| body.mass).fold(0.0, f64::max);
@@ -296,25 +300,26 @@ fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> 
     most
 }
 
-/// Returns ω² (1/s²) of a body divided by the stiffness (N/m) of a node, summed over the nodes that face a target at
-/// the same time.
+/// Returns the factor (1/kg) by which the stiffness (N/m) of one node is multiplied to obtain ω² (1/s²) of a body: the
+/// number of nodes that are in contact at the same time, divided by the mass of the body.
 ///
-/// These are all nodes of a straight face, or a quarter of the nodes around a body.
+/// The nodes in contact are all nodes of a straight face, or a quarter of the nodes around a body.
 fn per_stiffness(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>) -> f64 {
     facing(model, pair, |nodes| if is_straight(nodes) { 1.0 } else { 0.25 }) / body.mass
 }
 
-/// Returns the stiffness (N/m) of a node at a penetration (m), or the stiffness of its tangential spring if that is
-/// larger.
+/// Returns the larger of the normal stiffness (N/m) of a node at a penetration (m) and the stiffness (N/m) of its
+/// tangential spring.
 fn stiffness(model: &Model<Planar>, pair: &ContactPair, depth: f64) -> f64 {
     let interface = &model.interfaces()[pair.interface];
     interface.normal.tangent_stiffness(depth).max(interface.friction.stick_stiffness())
 }
 
-/// Returns the larger of the rates Σc/m and Σc d²/I (1/s), where d is the lever arm. The sums cover the nodes that face
-/// a target at the same time.
+/// Returns the rate γ (1/s) at which the dampers of a pair stop a body: the larger of Σc/m and Σc d²/I, where c is the
+/// damping of a node and d its lever arm.
 ///
-/// These are half of the nodes around a body on a flat target, and a quarter of these nodes on a round target.
+/// The sums cover the nodes that are in contact at the same time: half of the nodes around a body on a flat target, and
+/// a quarter of the nodes on a round target.
 fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, depth: f64) -> f64 {
     let damping = model.interfaces()[pair.interface].normal.tangent_damping(depth);
     let flat = match &model.bodies()[pair.target].surfaces[pair.surface].surface {
@@ -331,8 +336,11 @@ fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, 
     facing(model, pair, |_| if flat { 0.5 } else { 0.25 }) * damping * turning.max(1.0 / body.mass)
 }
 
-/// Returns the number of nodes of a pair, or meters of boundary, that are in contact at the same time: a share of all
-/// nodes, but at least two.
+/// Returns the number of nodes of a pair that are in contact at the same time, or their tributary length (m) if the
+/// contact constants are given per length.
+///
+/// Of fixed nodes, the fraction that `share` returns is in contact, but at least two nodes. Fixed nodes with constants
+/// per seat count as one node.
 fn facing(
     model: &Model<Planar>,
     pair: &ContactPair,
@@ -365,10 +373,10 @@ fn is_straight(nodes: &[Node<Planar>]) -> bool {
     nodes.iter().all(|node| aside(node) <= 1e-9 * along.dot(along))
 }
 
-/// Returns the mean square lever arm (m²) of node forces about the center of mass.
+/// Returns the mean of the squared lever arms (m²) of the node forces about the center of mass.
 ///
-/// The result is zero for a rolling node, because such a node turns the body by friction only, and friction is limited
-/// by the tangential spring.
+/// The result is zero for [`Nodes::Rolling`], because a rolling node turns the body by friction only, and friction is
+/// limited by the tangential spring.
 fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     match nodes {
         Nodes::Fixed(nodes) if !nodes.is_empty() => {
@@ -406,7 +414,7 @@ fn mean_square(arms: impl ExactSizeIterator<Item = f64>) -> f64 {
     arms.map(|arm| arm * arm).sum::<f64>() / count
 }
 
-/// Rounds down to a number with one or two digits: a power of ten multiplied by one of a few factors.
+/// Rounds down to a power of ten multiplied by 1, 1.2, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6 or 8.
 pub fn round_down(value: f64) -> f64 {
     const DIGITS: [f64; 10] = [1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0];
     let power = math::pow(10.0, math::log10(value).floor());

@@ -1,10 +1,10 @@
 //! Error that an elastic friction spring causes when the slip reverses.
 //!
-//! In Coulomb friction, the tangential spring of a contact (its stick) is elastic. When the slip reverses, the friction
-//! force therefore changes its sign gradually, over twice the yield displacement of the spring, which delays every
-//! reversal by √(4 yield / acceleration). For a block on oscillating ground, this delay increased or decreased the slip
-//! by 0.3 to 2.7 times √(yield / amplitude) (`crates/dynamics/tests/reversal.rs`). The relative error is therefore
-//! reported as √(yield / amplitude).
+//! A contact with Coulomb friction sticks by means of an elastic tangential spring. When the slip reverses, the
+//! friction force therefore changes its sign gradually, over twice the yield displacement of the spring, which delays
+//! every reversal by √(4 yield / acceleration). For a block on oscillating ground, this delay increased or decreased
+//! the slip by a relative amount of 0.3 to 2.7 times √(yield / amplitude) (`crates/dynamics/tests/reversal.rs`). The
+//! relative error is therefore reported as √(yield / amplitude).
 
 use std::fmt;
 
@@ -20,8 +20,8 @@ const REPORTED: f64 = 0.05;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SoftStick {
     interface: String,
-    /// Tangential displacement (m) at which the friction springs of the interface, taken together, yield under the
-    /// normal forces at rest.
+    /// Tangential displacement (m) at which the friction springs of the interface yield under the normal forces at
+    /// rest: the sum of their friction limits, divided by the sum of their stiffnesses.
     yields: f64,
     /// Peak displacement of the ground (m).
     swing: f64,

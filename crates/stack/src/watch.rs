@@ -37,7 +37,8 @@ pub struct Watch {
     /// Forces and failures of force elements.
     pub elements: ElementFates,
     end: End,
-    /// Reason for the end of the run; `None` while the run continues, and if the run reaches its end time.
+    /// Reason for the end of the run, if a stop criterion or the caller ended it. `None` while the run continues, and
+    /// after a run that reached its end time or broke down numerically.
     pub ending: Option<Ending>,
 }
 

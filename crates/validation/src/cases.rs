@@ -73,7 +73,7 @@ struct Expect {
     tolerance: f64,
 }
 
-/// The reason why a file is not a case.
+/// Error in a case file.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {problem}")]
 pub struct CaseError {

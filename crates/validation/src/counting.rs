@@ -14,7 +14,7 @@ thread_local! {
     static DONE: Cell<Operations> = const { Cell::new(Operations::NONE) };
 }
 
-/// Number of operations.
+/// Numbers of arithmetic operations, by kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Operations {
     /// Number of additions, subtractions and multiplications.
@@ -124,19 +124,19 @@ impl SubAssign for Counting {
     }
 }
 
-/// Counts of the work of a run.
+/// Computational work of a run: steps, nodes in contact and arithmetic operations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Work {
     /// Number of accepted steps.
     pub steps: u64,
-    /// Number of touching nodes, summed over the steps.
+    /// Number of nodes in contact, summed over the steps.
     pub touching: u64,
     /// Operations of the whole run, including its start.
     pub operations: Operations,
 }
 
 impl Work {
-    /// Runs a case, and counts its steps, touching nodes and arithmetic operations.
+    /// Runs a case, and counts its steps, nodes in contact and arithmetic operations.
     pub fn of<D: Drive<Planar>>(method: Method, case: Case<'_, Planar, D>) -> Self {
         let mut one = One { case: Some(case), touching: 0, steps: 0 };
         let operations = Operations::of(|| run_batch::<Planar<Counting>, _>(method, &mut one));
@@ -144,7 +144,7 @@ impl Work {
     }
 }
 
-/// A batch of one case that counts touching nodes.
+/// Batch that contains a single case and counts the steps and the nodes in contact.
 struct One<'a, D> {
     case: Option<Case<'a, Planar, D>>,
     touching: u64,

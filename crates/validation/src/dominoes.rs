@@ -17,7 +17,7 @@ pub const DOMINO: f64 = 0.15;
 pub struct Row {
     /// Number of dominoes.
     pub count: u32,
-    /// Free distance between two dominoes, as a fraction of their height.
+    /// Gap between two adjacent dominoes, as a fraction of their height.
     pub spacing: f64,
     /// Coefficient of friction between dominoes.
     pub friction: f64,

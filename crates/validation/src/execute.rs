@@ -21,9 +21,9 @@ pub struct Row {
     pub seconds: f64,
 }
 
-/// Runs all problems on a number of threads and returns one row per problem, in their order.
+/// Runs all problems on the given number of threads and returns one row per problem, in the order of the problems.
 ///
-/// `done` is called with the index of each problem when it ends.
+/// `done` is called with the index and the row of each problem when it ends.
 pub fn execute(
     problems: &[Problem],
     effort: Effort,

@@ -1,11 +1,11 @@
-//! Unknowns: constants that nobody has measured on the stack, and that the whole stack shares.
+//! Unknowns: constants that have not been measured on the stack. Each constant has one value for the whole stack.
 
 use barrelstack_input::section;
 
 use super::dimension::Dimension;
 use super::field::{Default, Kind, Range};
 
-/// A standard deviation of a logarithm.
+/// Kind of a parameter from 0 to 1, such as the standard deviation of a logarithm.
 const DISPERSION: Kind = Kind::Number(Range::between(0.0, 1.0));
 
 section! {

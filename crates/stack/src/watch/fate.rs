@@ -15,8 +15,8 @@ pub struct Thresholds {
     pub seat_loss_ratio: f64,
     /// Drop (m) of a body below its position at rest, beyond which the body has fallen.
     pub fall_drop: f64,
-    /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left its
-    /// seat.
+    /// Displacement of a rack on the barrels below, as a fraction of [`Assembly::rack_reach`], beyond which the rack
+    /// has left its seat.
     pub rack_slide_ratio: f64,
     /// Tilt (rad) of a rack relative to the rack below, beyond which the rack has left its seat by rocking.
     pub rocking_angle: f64,
@@ -25,7 +25,7 @@ pub struct Thresholds {
 }
 
 impl Thresholds {
-    /// Returns the thresholds of a scenario, with scaled lengths.
+    /// Returns the thresholds of a scenario, with lengths multiplied by `length_scale`.
     pub fn of(spec: &OutcomeSpec, length_scale: f64) -> Self {
         Self {
             seat_loss_ratio: spec.seat_loss_ratio,

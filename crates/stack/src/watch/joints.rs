@@ -255,8 +255,8 @@ impl<R: Real> Joint<R> {
         }
     }
 
-    /// Raises the peaks to the current force, at a time (s); the peaks until the first loss of seat are raised in
-    /// `standing` lanes only.
+    /// Replaces each peak by the current force component and its time (s) in those lanes in which the component is
+    /// larger in magnitude. The peaks until the first loss of seat are replaced in `standing` lanes only.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn raise(&mut self, time: R, standing: R::Mask) {
@@ -267,8 +267,8 @@ impl<R: Real> Joint<R> {
     }
 }
 
-/// Raises two peaks to a force (N) at a time (s) if the force is larger; the first peak is raised in standing lanes
-/// only.
+/// Replaces two peaks by a force (N) and its time (s) in those lanes in which the force is larger in magnitude.
+/// `until_loss` is replaced in `standing` lanes only.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
 fn raise<R: Real>(

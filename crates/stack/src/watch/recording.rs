@@ -69,7 +69,7 @@ const BODY: usize = 3;
 pub struct Recording {
     /// Frames of the motion.
     pub frames: Frames,
-    /// Times (s) of the samples of all channels.
+    /// Sample times (s), common to all channels.
     pub times: Vec<f64>,
     /// Histories of the ground motion, the displacements and the energies.
     pub channels: Vec<Channel>,
@@ -268,7 +268,8 @@ impl Recording {
         }
     }
 
-    /// Stores the largest forces at the end of the run, and sorts the joints as [`Joints::listed`] does.
+    /// Ends the recording: stores the largest forces of the run, and sorts the joints in the order of
+    /// [`Joints::listed`].
     pub(crate) fn finish(&mut self) {
         for (history, joint) in self.joints.iter_mut().zip(&self.forces.joints) {
             history.joint = joint.clone();

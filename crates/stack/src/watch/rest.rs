@@ -141,7 +141,7 @@ impl Rest {
     }
 }
 
-/// Returns the times (s) from which a standing stack and a collapsed stack may be at rest.
+/// Returns the earliest times (s) at which a standing stack and a collapsed stack may count as at rest.
 ///
 /// `end` is the end of the motion (s), and `calm` returns the time (s) from which the ground is calm. Both returned
 /// times are infinite for [`Until::Duration`].

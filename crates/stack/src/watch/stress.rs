@@ -71,12 +71,13 @@ pub struct TotalForce {
     pub peak_whole_run: f64,
 }
 
-/// Division of a boundary into points with a stress.
+/// Division of a boundary into the points at which stresses are recorded.
 #[derive(Clone, Copy, Debug)]
 enum Cells {
     /// Cells by angle around a circle with this radius (m).
     Around(f64),
-    /// Cells by `x` along the upper and then the lower half of a profile with this half length (m).
+    /// Cells by `x` along a profile with this half length (m): the cells of the upper half, followed by the cells of
+    /// the lower half.
     Along(f64),
     /// One point for every node, and for every place of a contact without nodes.
     Nodes,
@@ -129,8 +130,8 @@ impl StressEnvelope {
         (at_rest > 0.0).then(|| loaded.sum::<f64>() / at_rest)
     }
 
-    /// Returns the ratio of the largest stress until the first loss of seat to the stress at rest, averaged over the
-    /// part of the boundary that is loaded at rest; `None` without load at rest.
+    /// Returns the ratio of the largest stress until the first loss of seat to the stress at rest at the same point,
+    /// averaged over the part of the boundary that is loaded at rest; `None` without load at rest.
     pub fn mean_ratio(&self) -> Option<f64> {
         let length: f64 = self.loaded().map(|at| self.lengths[at]).sum();
         let ratio = |at: usize| self.peak[at] / self.at_rest[at] * self.lengths[at];

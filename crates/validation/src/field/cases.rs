@@ -39,7 +39,8 @@ pub struct FieldCase {
     pub mode: String,
     /// Share of the barrels of the stack that fell.
     pub fallen: f64,
-    /// Direction in which the first body left its seat, in a three-dimensional simulation.
+    /// Direction in which the first body left its seat: "right", "left", "away" or "near". Empty if the stack stands or
+    /// the simulation is planar.
     pub heading: String,
 }
 
@@ -109,7 +110,7 @@ impl FieldCases {
         self.cases.iter().filter(move |case| case.levels == levels)
     }
 
-    /// Returns the number of given cases that fall, and the number of all given cases.
+    /// Returns the number of cases in which the stack falls, and the number of all cases.
     pub fn count<'a>(cases: impl Iterator<Item = &'a FieldCase>) -> (u32, u32) {
         cases.fold((0, 0), |(falls, all), case| (falls + u32::from(case.falls), all + 1))
     }

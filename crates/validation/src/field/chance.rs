@@ -8,8 +8,8 @@ use super::cases::{FieldCase, FieldCases, UNKNOWNS};
 /// and factor on the motion.
 pub const MEDIANS: [f64; UNKNOWNS] = [0.30, 0.50, 3.0, 1.0];
 
-/// Scales of the natural logarithms of the unknowns relative to [`MEDIANS`]. The polynomial contains these logarithms
-/// divided by twice the scales.
+/// Scales of ln(u/m), where u is an unknown and m is its median ([`MEDIANS`]). The polynomial contains ln(u/m) divided
+/// by twice its scale.
 const UNITS: [f64; UNKNOWNS] = [0.35, 0.2, 0.6, 0.25];
 
 /// Standard deviations of the normal priors of the coefficients: constant, linear, and all others.

@@ -31,12 +31,12 @@ pub(super) struct Bounds<R: Real = f64> {
     most: R,
 }
 
-/// Shape of a range of contact points in which a contact loads the same cells.
+/// Geometry of the set of contact points for which a contact element loads the same cells of a body.
 #[derive(Clone, Copy, Debug)]
 enum CellRange {
-    /// All points of a rack: a contact element keeps the cells of its first contact.
+    /// All points of a rack: every contact of an element loads the envelope point of the first contact of the element.
     Everywhere,
-    /// Points between two directions, counterclockwise.
+    /// Points in a wedge, counterclockwise from the direction `from` to the direction `to` of [`Bounds`].
     Wedge,
     /// Points between two values of `x` (m) above the axis, or below it.
     Strip,
@@ -64,8 +64,9 @@ struct Pair<R: Real> {
     sides: Vec<Side>,
     /// Number of contact elements.
     count: usize,
-    /// Offset (m) and rotation of the target's surface on its body.
+    /// Offset (m) of the target's surface from the origin of the frame of its body.
     offset: Vec2<R>,
+    /// Rotation of the target's surface relative to its body.
     rotation: Rotation2<R>,
 }
 
@@ -161,7 +162,8 @@ pub(crate) struct StressWatch<R: Real = f64> {
 }
 
 impl StressWatch {
-    /// Creates the observer of a run, with the stresses at rest from a state and its `scratch`.
+    /// Creates the observer of a run that starts from the state at rest in `state`. The stresses at rest are computed
+    /// from the contact forces in `scratch`.
     pub(crate) fn new(
         assembly: &Assembly,
         state: &State<Planar>,
@@ -332,7 +334,7 @@ impl<R: Real> StressWatch<R> {
         std::mem::take(&mut self.lanes[lane]).stresses
     }
 
-    /// Raises the envelopes of a lane to the largest forces of the contacts at their current places.
+    /// Raises the envelopes of a lane to the stresses that the largest forces in `bounds` cause.
     fn raise(&mut self, lane: usize) {
         let Lane { stresses, pressed, .. } = &mut self.lanes[lane];
         for (bounds, pressed) in self.bounds.iter().zip(pressed.iter()) {
@@ -423,9 +425,10 @@ impl<R: Real> StressWatch<R> {
 }
 
 impl Lane {
-    /// Determines the place of a contact element at a point (m) of a body, and sets its bounds.
+    /// Determines which points of the envelope of a body a contact element loads, and sets the bounds of the element.
     ///
-    /// The element is given by pair, node and body; `touch` (m) is the point in the frame of the target's surface.
+    /// `element` contains the pair, the node and the body. `point` (m) is the contact point in the frame of the body,
+    /// and `touch` (m) is the same point in the frame of the target's surface.
     fn find(
         &mut self,
         model: &Model<Planar>,
