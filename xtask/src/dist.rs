@@ -252,7 +252,11 @@ fn wheel(root: &Path, triple: &str, free: Option<&str>) -> anyhow::Result<()> {
             checked(audit.args(["-m", "auditwheel", "show"]).arg(&file), "auditwheel")?;
         }
         let stable = file.to_string_lossy().contains("-abi3-");
-        ensure!(stable || is_free_threaded(&file), "{}: for one Python only", file.display());
+        ensure!(
+            stable || is_free_threaded(&file),
+            "{}: this wheel is for only one version of Python",
+            file.display()
+        );
         let mut audit = inside(&python);
         if stable {
             checked(audit.args(["-m", "abi3audit", "--strict"]).arg(&file), "abi3audit")?;

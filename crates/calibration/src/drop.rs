@@ -85,7 +85,7 @@ pub fn drop(
     } else {
         warnings.push(
             "gravity during the impact is neglected, so slow impacts give too low a restitution: state the \
-             mass and the stiffness to include it and to obtain the damping c"
+             mass and the stiffness to include gravity and to obtain the damping c"
                 .to_owned(),
         );
         scenario = format!(

@@ -71,8 +71,8 @@ pub fn stiffness(
         && difference > CLEARLY
     {
         warnings.push(format!(
-            "force grows as penetration to the power 1.5 rather than proportionally (the information \
-             criterion is lower by {difference:.0}): the straight line is valid between these loads only; \
+            "the force grows as penetration to the power 1.5 rather than proportionally (the information \
+             criterion is lower by {difference:.0}): the straight line is valid between the measured loads only; \
              law = \"hertz\" with stiffness = {} fits better",
             quoted(hertz / f64::from(nodes), Dimension::HERTZ_STIFFNESS)
         ));

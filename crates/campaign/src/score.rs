@@ -249,7 +249,9 @@ pub enum ScoreError {
     #[error(transparent)]
     Decision(#[from] DecisionError),
     /// The runs do not determine a score.
-    #[error("no score for stacks in the state \"{state}\" when shaken {direction}")]
+    #[error(
+        "the runs determine no score of stacks in the state \"{state}\" that are shaken {direction}"
+    )]
     Curve {
         /// Name of the state.
         state: String,

@@ -48,7 +48,10 @@ fn a_rack_that_space_does_not_support_is_refused_before_anything_is_run() {
     let request = Request { rack: "rack-on-rack".into(), in_space: true, ..Request::default() };
     let (result, runs) = stopped_at_once(&request);
     let said = result.expect_err("racks on posts").to_string();
-    assert!(said.contains("space supports only racks that lie on the barrels below"), "{said}");
+    assert!(
+        said.contains("three-dimensional stacks support only racks that lie on the barrels below"),
+        "{said}"
+    );
     assert_eq!(runs, 0);
 }
 

@@ -149,7 +149,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
         2,
         "[[motion]]\nsynthetic = { kind = \"boore\", count = 3, magnitude = 6, distance = \"8 km\" }\n\
          scale = { measure = \"sa(1.0)\", value = \"0.3 g\", of = \"rotd50\" } # HERE\n",
-        &["of both horizontals needs a recorded motion"],
+        &["of both horizontal components needs a recorded motion"],
     ),
     (
         2,
@@ -182,7 +182,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
         2,
         "[[motion]]\nsynthetic = { kind = \"clough-penzien\", count = 2 }\n\
          scale = { measure = \"pgv\", value = \"1 m/s\", of = \"rotd50\" } # HERE\n",
-        &["of both horizontals needs a recorded motion"],
+        &["of both horizontal components needs a recorded motion"],
     ),
     (
         2,

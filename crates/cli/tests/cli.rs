@@ -488,7 +488,7 @@ fn help_names_the_exit_statuses_and_every_command() {
 fn a_score_takes_no_record() {
     let said = barrelstack(["score", "demo-napa", "--record", "mine.AT2"]);
     assert_eq!(said.status.code(), Some(2));
-    assert!(stderr(&said).contains("--record") && stderr(&said).contains("leave it out"));
+    assert!(stderr(&said).contains("--record") && stderr(&said).contains("leave --record out"));
 }
 
 #[cfg(unix)]

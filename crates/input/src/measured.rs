@@ -259,7 +259,7 @@ impl Table {
         let named = Some(column.name.as_str());
         let Some(unit) = column.unit.as_deref().filter(|unit| !unit.is_empty()) else {
             let expected = format!("a unit in parentheses, as in {}", example());
-            return Err(at_header(named, &expected, "none", "add it to the header"));
+            return Err(at_header(named, &expected, "none", "add the unit to the header"));
         };
         if let Err(error) = Quantity::parse_as(&format!("1 {unit}"), &[dimension]) {
             let expected = format!("a unit of {dimension}");

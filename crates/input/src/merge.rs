@@ -305,5 +305,7 @@ fn set_in_item(
     {
         return set(below, section, rest, value);
     }
-    Err(format!("name a field of `{key}.{wanted}` after a dot"))
+    Err(format!(
+        "`{key}.{wanted}` is a whole item of a list; add a dot and the name of one of its fields"
+    ))
 }

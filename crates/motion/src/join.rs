@@ -220,7 +220,7 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
         let misfit = misfit(tail, head);
         if !(misfit <= LARGEST_MISFIT) {
             return Err(refuse(format!(
-                "channel {name}: the overlap of {} differs by {:.0} %",
+                "channel {name}: in the overlap, {} differs by {:.0} % from the part before",
                 part.file,
                 100.0 * misfit
             )));

@@ -103,7 +103,10 @@ fn applied<S: Listed>(
     moment: &[f64],
 ) -> PyResult<Applied<S>> {
     let wrong = |what: &str, parts: &str, found: &[f64]| {
-        PyValueError::new_err(format!("{what} has {parts}; found {} of them", found.len()))
+        PyValueError::new_err(format!(
+            "{what} has {parts}; the number of values found is {}",
+            found.len()
+        ))
     };
     let zero = |numbers: &[f64]| numbers.is_empty();
     let point = if zero(at) { Some(S::Vector::default()) } else { S::vector(at) };
@@ -239,7 +242,7 @@ impl Running {
         };
         if !same {
             return Err(PyValueError::new_err(
-                "the state belongs to another simulation: reset to a copy of this simulation",
+                "the state belongs to another simulation; give a state that was copied from this simulation",
             ));
         }
         self.clone_from(to);

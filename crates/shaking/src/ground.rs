@@ -142,7 +142,7 @@ pub fn scaled(
             (Some(over), MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_)) => {
                 return Err(MotionError::NotScalable {
                     measure: format!("{measure} ({over} of both horizontals)"),
-                    reason: "only a record has two horizontals".to_owned(),
+                    reason: "only a record has two horizontal components".to_owned(),
                 });
             }
         },

@@ -16,8 +16,8 @@ pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, Ass
         return refuse(
             "stack.rack",
             format!(
-                "stack.rack = \"{}\" has {}; space supports only racks that lie on the barrels below with straight \
-                 tubes: choose \"two-barrel\" or \"four-barrel\", or set stack.view to \"both\"",
+                "stack.rack = \"{}\" has {}; three-dimensional stacks support only racks that lie on the barrels below \
+                 with straight tubes: choose \"two-barrel\" or \"four-barrel\", or set stack.view to \"both\"",
                 rack.base,
                 if rack.kind == RackKind::OnBarrels { "feet" } else { "posts" }
             ),

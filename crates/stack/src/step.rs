@@ -144,7 +144,7 @@ pub fn restitution_warning(scenario: &Scenario) -> Option<String> {
     (states && tolerance > KEEPS_RESTITUTION).then(|| {
         format!(
             "run.tolerance = {tolerance:e}: the adaptive method may miss the restitution of this \
-             scene by several percent; {KEEPS_RESTITUTION:e} reproduces it"
+             scene by several percent; the tolerance {KEEPS_RESTITUTION:e} reproduces the restitution"
         )
     })
 }

@@ -151,7 +151,8 @@ impl Observed {
             || self.times().any(|(_, time)| time == Time::Never)
             || last == 0.0;
         if open {
-            let remedy = "state it, because a barrel or the stack still stood, or no time is given";
+            let remedy = "state this time, which is needed if a barrel or the stack still stood, or if the row \
+                          gives no time";
             return Err(table
                 .at(row, "until", "how long the test was observed", "nothing", remedy)
                 .into());

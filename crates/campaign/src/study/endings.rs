@@ -80,8 +80,8 @@ impl Endings {
             let were = were(stopped);
             return Some(format!(
                 "{stopped} of {judged} cases {were} stopped a fixed time after the collapse \
-                 (run.stop_after_collapse, or run.until = \"verdict\"), before everything had fallen; omit this \
-                 setting to follow every case until nothing moves"
+                 (run.stop_after_collapse, or run.until = \"verdict\"), before everything had fallen; omit these \
+                 settings to follow every case until nothing moves"
             ));
         }
         if short > 0 {

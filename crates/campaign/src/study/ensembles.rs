@@ -174,7 +174,8 @@ fn matching(
     }
     if names.len() > MOST {
         return refuse(format!(
-            "the folder {} has {} files, more than {MOST}",
+            "the folder {} has {} files that match \"{pattern}\", more than the maximum of {MOST}; use a pattern \
+             that matches fewer files",
             folder.display(),
             names.len()
         ));

@@ -463,8 +463,8 @@ fn read_design(
             let axes = factors.len() + 2;
             if count as usize > MOST_STRATA / axes {
                 let message = format!(
-                    "{count} samples of {axes} quantities (motion, level and factors) do not fit into memory: use at most {}, \
-                     or \"sobol\"",
+                    "{count} samples of {axes} quantities (motion, level and factors) do not fit into memory: use at \
+                     most {} samples, or the design \"sobol\"",
                     MOST_STRATA / axes
                 );
                 return Err(reader.inconsistent("count", message));

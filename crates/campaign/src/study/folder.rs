@@ -177,7 +177,8 @@ impl Folder {
                     Some(reason) => format!("belongs to another study: {reason}"),
                 };
                 return refuse(format!(
-                    "{reason}; name another folder, or use the study to which it belongs (a copy of its file is {})",
+                    "{reason}; name another folder, or use the study to which this folder belongs (a copy of the file \
+                     of that study is {})",
                     path.join("study.toml").display()
                 ));
             }

@@ -20,7 +20,7 @@ use crate::progress::Progress;
 /// Prints the plan of a cellar, and the problems found in the plan.
 pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCode> {
     if args.table {
-        bail!("--table tabulates one stack; leave it out for a cellar");
+        bail!("--table tabulates one stack; leave --table out for a cellar");
     }
     let plan = Plan::of(cellar).map_err(|error| placed(error.into(), cellar, &args.scenario))?;
     if let Some(path) = &args.plan {
@@ -96,7 +96,7 @@ pub(super) fn run(
         (args.verify, "--verify", "only the run of a single stack can be repeated as a check"),
     ] {
         if given {
-            bail!("{option}: {reason}; leave it out for a cellar");
+            bail!("{option}: {reason}; leave {option} out for a cellar");
         }
     }
     let (cellar, choice) = selected(cellar, args.variants)?;

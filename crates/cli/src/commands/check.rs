@@ -24,7 +24,7 @@ pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
         Loaded::Cellar(cellar) => return super::cellar::check(args, &cellar),
     };
     if args.plan.is_some() {
-        bail!("--plan draws the room of a cellar; leave it out for one stack");
+        bail!("--plan draws the room of a cellar; leave --plan out for one stack");
     }
     if args.table {
         let table = table(&scenario, &args.scenario)?;

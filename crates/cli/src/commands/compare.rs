@@ -96,11 +96,14 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         ),
         (None, _) => super::layouts::compare(args, &requested, cellars),
         (Some(_), None) if args.usual => {
-            bail!("--usual adds changes of a room; leave it out, or give a cellar")
+            bail!(
+                "--usual adds changes of the room of a cellar; leave --usual out, or give a cellar"
+            )
         }
         (Some(_), None) if args.tables.need(false).is_err() => {
             bail!(
-                "--xlsx and --decimal-comma: only a comparison of cellars has tables; leave them out"
+                "--xlsx and --decimal-comma apply to tables, which only a comparison of cellars has; leave both \
+                 options out"
             )
         }
         (Some(_), None) => stacks(args, &requested, scenarios),
@@ -110,7 +113,11 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
 /// Replaces the names of the first runs by the given names.
 pub(super) fn name(names: &mut Vec<String>, given: &[String]) -> anyhow::Result<()> {
     if given.len() > names.len() {
-        bail!("--label: there are {} names for {} runs", given.len(), names.len());
+        bail!(
+            "--label: there are {} names for {} runs; give at most one name for each run",
+            given.len(),
+            names.len()
+        );
     }
     names.splice(..given.len(), given.iter().cloned());
     Ok(())

@@ -127,7 +127,10 @@ fn layouts(args: &CompareArgs, given: Vec<Named>) -> anyhow::Result<(Vec<Named>,
     }
     if runs.len() == 1 {
         let reasons = left_out.iter().map(|one| format!("{}: {}", one.name, one.reason));
-        bail!("no usual change can be compared; {}", reasons.collect::<Vec<_>>().join("; "));
+        bail!(
+            "none of the changes that --usual adds can be compared with this cellar; {}",
+            reasons.collect::<Vec<_>>().join("; ")
+        );
     }
     comparison::check(&runs)?;
     Ok((runs, left_out))

@@ -99,7 +99,7 @@ fn request(args: &ProtectArgs) -> anyhow::Result<Request> {
         );
     }
     if let Some(budget) = args.budget.filter(|budget| !(*budget >= 0.0 && budget.is_finite())) {
-        bail!("--budget {budget}: expected an amount in US$, not negative");
+        bail!("--budget {budget}: expected an amount in US$ of 0 or more");
     }
     Ok(Request {
         scenario,

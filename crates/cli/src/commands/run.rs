@@ -30,10 +30,14 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         Loaded::Cellar(cellar) => return super::cellar::run(args, *cellar, &|_| None),
     };
     if args.keep.is_some() {
-        bail!("--keep applies only to the variants of a cellar; leave it out for a single stack");
+        bail!(
+            "--keep applies only to the variants of a cellar; leave --keep out for a single stack"
+        );
     }
     if args.state.is_some() {
-        bail!("--state: only the run of a cellar can be continued; leave it out for one stack");
+        bail!(
+            "--state: only the run of a cellar can be continued; leave --state out for one stack"
+        );
     }
     let selection = selected(&mut scenario, args.variants)?;
     args.tables.need(args.out.is_some())?;

@@ -16,7 +16,9 @@ pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
     match &args.action {
         None => list(args.json)?,
         Some(ScenariosAction::List { json }) => list(*json || args.json)?,
-        Some(_) if args.json => bail!("--json applies only to the list of scenarios; leave it out"),
+        Some(_) if args.json => {
+            bail!("--json applies only to the list of scenarios; leave --json out")
+        }
         Some(ScenariosAction::Show { name, resolved }) => printer::text(&shown(name, *resolved)?)?,
         Some(ScenariosAction::Fields { filter: None }) => printer::text(&reference::markdown())?,
         Some(ScenariosAction::Fields { filter: Some(filter) }) => {

@@ -36,11 +36,13 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     if args.scenario.record.is_some() {
         bail!(
             "--record: a score uses only the motions of its protocol, which are the same for all racks; \
-             leave it out"
+             leave --record out"
         );
     }
     if !args.catalog && args.tables.need(false).is_err() {
-        bail!("--xlsx and --decimal-comma: only --catalog writes tables; leave them out");
+        bail!(
+            "--xlsx and --decimal-comma apply to tables, which only --catalog writes; leave both options out"
+        );
     }
     let (options, progress) = args.page.begin(&args.out)?;
     let protocol = Protocol::rockscore().thinned(args.one_in);

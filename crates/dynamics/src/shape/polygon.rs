@@ -69,8 +69,8 @@ pub enum PolygonError {
     },
     /// The corners go around the polygon more than once.
     #[error(
-        "the outline winds around more than once, found at corner {corner}: give each corner of a \
-         convex polygon once"
+        "the corners go around the polygon more than once, since a full turn is complete at corner {corner}: \
+         list each corner of a convex polygon once"
     )]
     Overlapping {
         /// Number of the corner, counted from 1, at which the first full turn is complete.

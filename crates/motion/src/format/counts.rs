@@ -85,8 +85,8 @@ pub(super) fn channel(
                     Refusal::OtherInstrument,
                     "a channel of accelerations",
                     format!("{name}, whose unit is a unit of {quantity}"),
-                    "give the accelerations of the same station, or state that this is to be \
-                     differentiated",
+                    "give the accelerations of the same station, or state that this channel is \
+                     to be differentiated",
                 ));
             }
             factor

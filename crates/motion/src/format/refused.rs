@@ -72,7 +72,7 @@ pub(crate) const SLAMMER: Format = Format {
             0,
             "an acceleration history",
             "SLAMMER's table of records",
-            "use a record file, and state g as its unit and the time step of this table as its step",
+            "give a record file with the unit g and with the time step stated in this table",
         ))
     },
 };

@@ -71,7 +71,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
             Refusal::Unrecognized,
             "a SAC header of version 6 or 7, 632 bytes",
             format!("{} bytes of other data", bytes.len()),
-            "give a SAC file, binary",
+            "give a binary SAC file",
         )
     })?;
     let damaged = |expected: &str, found: String| {

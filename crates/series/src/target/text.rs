@@ -98,7 +98,7 @@ impl<'a> Parameters<'a> {
             None => Ok(()),
             Some(("damping", found)) => Err(self.wrong(
                 "damping",
-                "none, since the code applies to 5 % damping only (use a table for another ratio)",
+                "no value, because this code applies to 5 % damping only (for another ratio, use a table)",
                 found,
             )),
             Some((key, found)) => Err(self.unlike(&format!("no parameter {key}"), found)),

@@ -65,7 +65,7 @@ pub fn read_shock(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
     let both = matches!(scale, Scale::Measure { of, .. } if of != MeasuredOn::Component);
     if both && !matches!(source, MotionSource::Record(_)) {
         let message = format!(
-            "`{}` of both horizontals needs a recorded motion; leave `of` out",
+            "`{}` of both horizontal components needs a recorded motion; leave the field `of` out",
             reader.path_of("scale")
         );
         return Err(reader.inconsistent("scale", message));
@@ -193,7 +193,8 @@ fn read_sine(reader: Reader<'_>) -> Result<Sine, InputError> {
     let ramp_cycles = reader.number("ramp_cycles")?;
     if 2.0 * ramp_cycles > cycles {
         let message = format!(
-            "`{}` of {ramp_cycles} at both ends does not fit in {cycles} cycles",
+            "`{}` is {ramp_cycles}, but the ramps at both ends must fit into {cycles} cycles; state at most half of \
+             these cycles",
             reader.path_of("ramp_cycles")
         );
         return Err(reader.inconsistent("ramp_cycles", message));

@@ -121,7 +121,7 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
     check_levels(&reader, straps.levels, levels)?;
     if straps.levels == 1 && straps.ties == Ties::LevelsTogether {
         return refused(format!(
-            "`{path}` is 1, but \"levels-together\" ties at least 2 levels; take 2, or \"barrels-to-racks\""
+            "`{path}` is 1, but \"levels-together\" ties at least 2 levels; write 2, or choose \"barrels-to-racks\""
         ));
     }
     reader.finish();

@@ -111,7 +111,8 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<AnchorTies, InputE
         && ties.damping == 0.0
     {
         let message = format!(
-            "`{}` of {yields_at} N is not below the strength of {strength} N, so no tie would yield; leave it out",
+            "`{}` of {yields_at} N is not below the strength of {strength} N, so no tie would yield; leave \
+             `yields_at` out",
             reader.path_of("yields_at")
         );
         return Err(reader.inconsistent("yields_at", message));

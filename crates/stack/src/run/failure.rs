@@ -22,7 +22,7 @@ pub enum RunFailure {
     #[error(transparent)]
     Settle(#[from] Restless),
     /// The time step is too long for the contacts.
-    #[error("run.step = {given} ms is too long: {reason}; try {instead} ms, or leave it out")]
+    #[error("run.step = {given} ms is too long: {reason}; try {instead} ms, or leave run.step out")]
     Step {
         /// The step requested (ms).
         given: f64,

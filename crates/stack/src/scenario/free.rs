@@ -331,8 +331,8 @@ fn read_interfaces(
             && of_kind(bodies, &between[1]).all(|(_, shape, _)| shape.is_none())
         {
             let message = format!(
-                "nothing of the kind \"{}\" has a shape that nodes could touch; write the kind that carries the nodes \
-                 first",
+                "nothing of the kind \"{}\" has a shape that nodes could touch; in `between`, state first the kind \
+                 that carries the nodes",
                 between[1]
             );
             return Err(reader.inconsistent("between", message));
@@ -344,8 +344,8 @@ fn read_interfaces(
         let turned = |known: &FreeInterface| known.between.iter().rev().eq(&between);
         if between.iter().all(whole) && interfaces.iter().any(turned) {
             let message = format!(
-                "the order of two kinds with exact or rolling nodes does not matter, and \"{}\" with \"{}\" is already \
-                 stated above; keep one",
+                "the interface of \"{}\" with \"{}\" is already stated above, and the order of two kinds with exact or \
+                 rolling nodes does not matter; keep one of the two interfaces",
                 between[1], between[0]
             );
             return Err(reader.inconsistent("between", message));

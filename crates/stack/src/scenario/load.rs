@@ -377,8 +377,8 @@ pub(super) fn extend(
                 let (name, bytes, folder) = if is_file {
                     if access == Access::BuiltinOnly {
                         let message = format!(
-                            "a file can extend \"{target}\" only when it is itself read from a \
-                             file; name a built-in scenario"
+                            "the file \"{target}\" can be extended only by a scenario that is itself read \
+                             from a file; extend a built-in scenario instead"
                         );
                         return Err(problem(Problem::Inconsistent { message }));
                     }

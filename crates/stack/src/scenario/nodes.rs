@@ -130,7 +130,8 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
         }
         Nodes::Count(count) if number(&rule, Some(shape)) > MOST_NODES => {
             let message = format!(
-                "{count} nodes on each side are more than {MOST_NODES} on the whole boundary; take fewer"
+                "{count} nodes on each side make more than {MOST_NODES} nodes on the whole boundary; state a \
+                 smaller number"
             );
             return Err(nodes.inconsistent("count", message));
         }

@@ -57,7 +57,7 @@ pub(super) fn renew(table: &mut Table, sources: &Sources) -> Result<Vec<String>,
             }
             let off = [FORMER, PRESENT].into_iter().zip(drawn).find(|(_, drawn)| !drawn);
             off.map_or_else(
-                || "leave it out".to_owned(),
+                || "omit this key".to_owned(),
                 |(section, _)| format!("write `{section}.drawn = false`"),
             )
         } else {
@@ -76,8 +76,8 @@ fn kinds(entry: &Entry, sources: &Sources) -> Result<[bool; 2], ScenarioError> {
     let known = KINDS.iter().find(|(name, _)| entry.node.value == Value::Text((*name).to_owned()));
     known.map(|(_, drawn)| *drawn).ok_or_else(|| {
         let message = format!(
-            "`{FORMER}.{KIND}` is {}, but its only values were \"both\", \"hair\" and \"ignorance\"; replace it by \
-             `{FORMER}.drawn` and `{PRESENT}.drawn`, which are true or false",
+            "`{FORMER}.{KIND}` is {}, but this former key has only the values \"both\", \"hair\" and \"ignorance\"; \
+             replace the key by `{FORMER}.drawn` and `{PRESENT}.drawn`, which are true or false",
             entry.node.value.describe()
         );
         sources.error(entry.node.origin, Problem::Inconsistent { message })

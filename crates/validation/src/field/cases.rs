@@ -93,7 +93,9 @@ impl FieldCases {
             };
             let azimuth = if cells[1].is_empty() { None } else { Some(number(1)?.to_radians()) };
             cases.push(FieldCase {
-                levels: cells[0].parse().map_err(|_| fault("levels are no number".to_owned()))?,
+                levels: cells[0]
+                    .parse()
+                    .map_err(|_| fault("the number of levels is not a whole number".to_owned()))?,
                 azimuth,
                 unknowns: [number(2)?, number(3)?, number(4)?, number(6)?],
                 falls,

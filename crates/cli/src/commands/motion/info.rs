@@ -76,7 +76,8 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
 fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
     if args.json || args.all_measures || args.input.join {
         bail!(
-            "--json, --all-measures and --join apply to single files, not to folders, whose table has fixed columns"
+            "--json, --all-measures and --join apply to single files, not to folders, whose table has fixed columns; \
+             leave these options out for a folder"
         );
     }
     let batch = Batch::new(&args.input, out, &args.folder, "info".to_owned());

@@ -221,12 +221,14 @@ impl Input {
                 [one] => (one.clone(), "which lies"),
                 several => (format!("{} StationXML files", several.len()), "which lie"),
             };
-            record.notes.push(format!("sensitivities from {of}, {lie} beside"));
+            record
+                .notes
+                .push(format!("sensitivities from {of}, {lie} in the folder of the record"));
             return Ok(record);
         }
         first.map_err(|error| match damaged {
             Some(why) => with_option(error)
-                .context(format!("{why:#}; no other file in its folder states a sensitivity")),
+                .context(format!("{why:#}; no other file in the same folder states a sensitivity")),
             None => with_option(error),
         })
     }
@@ -398,7 +400,7 @@ fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     }
     if found.is_empty() {
         bail!(
-            "{}: expected StationXML with a sensitivity, found none in {} files that end with .xml",
+            "{}: expected StationXML with a sensitivity, found none; files that end with .xml: {}",
             path.display(),
             files.len()
         );

@@ -122,7 +122,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
         None => Ok(ExitCode::SUCCESS),
         Some(words) => {
             printer::warning(&format!(
-                "the target is missed {words}: accepted as requested; exit status {NEAR}"
+                "the target is missed {words}, which is accepted as requested; the exit status is {NEAR}"
             ));
             Ok(ExitCode::from(NEAR))
         }
@@ -150,7 +150,7 @@ impl Part {
         let channel = record.component(&input::component(record, name)?)?;
         match record.channels.iter().position(|other| other.name == channel.name) {
             Some(place) => Ok(Self::One(place)),
-            None => bail!("--of {name}: select it with --component {name} first"),
+            None => bail!("--of {name}: this component is not selected; add --component {name}"),
         }
     }
 

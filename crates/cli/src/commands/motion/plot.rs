@@ -165,7 +165,7 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
     if is_file(&args.output) {
         if args.formats.names_any() {
             bail!(
-                "--format applies to a folder; the name {} already states the format",
+                "--format applies to a folder, but the name {} already states the format; leave --format out",
                 args.output.display()
             );
         }

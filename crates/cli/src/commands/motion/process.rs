@@ -100,7 +100,7 @@ impl FromStr for Axes {
             ("vmax", _) => Ok(Self::Fastest),
             (_, Some(strike)) if f64::is_finite(strike) => Ok(Self::Strike(strike)),
             _ => Err(
-                "expected vmax, or a strike in degrees clockwise from north, such as strike:122"
+                "expected `vmax`, or a strike in degrees clockwise from north, such as `strike:122`"
                     .to_owned(),
             ),
         }
@@ -208,7 +208,9 @@ fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
     after.channels.clear();
     for (channel, corners) in before.channels.iter().zip(before.noise_corners(&criterion)) {
         let corners = corners.map_err(|error| {
-            anyhow!("--corners auto: {error}, with --high-pass and --low-pass, or none")
+            anyhow!(
+                "--corners auto: {error}, with --high-pass and --low-pass in place of --corners"
+            )
         })?;
         let chain = Processing {
             high_pass: Some(corners.high_pass),
@@ -230,7 +232,7 @@ fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
 pub(super) fn share(option: &str, text: &str) -> anyhow::Result<f64> {
     let value = number_or(option, text, Dimension::NONE)?;
     if !value.is_finite() {
-        bail!("{option}: `{text}` is not a share; write a number such as 0.05, or 5 %");
+        bail!("{option}: `{text}` is not a fraction; write a number such as 0.05, or 5 %");
     }
     Ok(value)
 }

@@ -67,7 +67,7 @@ pub(super) fn rows<const N: usize>(
         let place = format!("{}, line {}", path.display(), line + 1);
         let cells: Vec<&str> = row.split([',', ';', '\t']).map(str::trim).collect();
         if cells.len() != N {
-            bail!("{place}: expected {columns}, found {} columns", cells.len());
+            bail!("{place}: expected {columns}; number of columns found: {}", cells.len());
         }
         let Some(factor) = unit else {
             let words = cells[1].split_once('(').and_then(|(_, rest)| rest.split_once(')'));

@@ -52,7 +52,7 @@ pub(super) fn refuse(
                 line,
                 "values and units without a factor",
                 format!("{}, a factor of all values below", quoted(&source.text(line))),
-                "multiply the values by the factor, unless already done, and remove it",
+                "multiply the values by the factor, unless they already contain the factor, and remove the factor",
             ));
         }
     }

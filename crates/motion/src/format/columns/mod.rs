@@ -266,8 +266,8 @@ fn accelerations(
                 line,
                 "positive and negative accelerations",
                 "no value below 0, as in a spectrum",
-                "give the acceleration history; if it is one, name its columns in a line above them, such as \
-                 \"time (s), acceleration (g)\"",
+                "give the acceleration history; if this is an acceleration history, name its columns in a line above \
+                 them, such as \"time (s), acceleration (g)\"",
             ));
         }
     }
@@ -359,7 +359,7 @@ fn step(
             Refusal::Options,
             format!("samples at {} Hz, as this line seems to state", rate.value),
             format!("a step of {step} s"),
-            "give the step of this rate, or delete the line if it states another frequency",
+            "state the step of this sampling rate, or delete this line if it states another frequency",
         ));
     }
     stated.or_else(|| hints.time_step()).ok_or_else(|| {
@@ -520,7 +520,8 @@ fn units(
                     names_line,
                     "values and units without a factor",
                     format!("{}, a name with a factor", quoted(&name.label)),
-                    "multiply the values by the factor, unless already done, and write the name without it",
+                    "multiply the values by the factor, unless they already contain the factor, and write the name \
+                     without the factor",
                 ));
             }
             if let Some(name) = name
@@ -545,7 +546,7 @@ fn units(
                     names_line,
                     "values and units without a factor",
                     format!("{}, a unit with a factor", quoted(word)),
-                    "multiply the values by the factor, and write the unit without it",
+                    "multiply the values by the factor, and write the unit without the factor",
                 ));
             }
             if let Some(unit) = hints.unit() {

@@ -193,7 +193,7 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
             format!("{width} numbers"),
             format!("{found} numbers in {}", quoted(&text)),
             "a number may contain a comma for thousands or decimals, or the row belongs to another table; \
-             correct it",
+             correct or remove the row",
         );
     }
     source.ragged(line, width, found)

@@ -194,8 +194,8 @@ fn read_friction(
                 reader.optional_number("static_coefficient")?.unwrap_or(coefficient);
             if static_coefficient < coefficient {
                 let message = format!(
-                    "`{}` is {static_coefficient}, below the kinetic coefficient {coefficient}; raise it or leave it \
-                     out",
+                    "`{}` is {static_coefficient}, below the kinetic coefficient {coefficient}; raise or omit the \
+                     static coefficient",
                     reader.path_of("static_coefficient")
                 );
                 return Err(reader.inconsistent("static_coefficient", message));

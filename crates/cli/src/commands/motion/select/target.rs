@@ -40,7 +40,7 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
             let place = periods.iter().position(|t| *t == period).ok_or_else(|| {
                 let listed: Vec<String> = periods.iter().map(f64::to_string).collect();
                 anyhow!(
-                    "--at: {period} s is not one of the matched periods: {} s",
+                    "--at: {period} s is not one of the matched periods, which are {} s",
                     listed.join(", ")
                 )
             })?;
