@@ -64,7 +64,7 @@ pub enum ExportError {
     Write {
         /// Path that cannot be written.
         path: PathBuf,
-        /// Message of the operating system.
+        /// Error message from the operating system.
         reason: String,
     },
 }

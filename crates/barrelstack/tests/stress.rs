@@ -113,7 +113,7 @@ fn envelopes_at_rest_add_up_to_the_contact_forces_and_the_weight_of_every_body()
             assert!(is_drawn(&run, envelope), "{name}, {}", part.name);
         }
     }
-    assert!(bodies > 100 && page.contains(&format!("the {bodies} bodies below")));
+    assert!(bodies > 100 && page.contains(&format!("the {bodies} bodies in the table")));
     assert_eq!(stale, 0, "rows of validation/envelopes.md that are of another state");
 }
 

@@ -17,7 +17,7 @@ struct Plan<'a> {
     /// For every stack, in the order of their names: index of its source island, and index of the stack among the
     /// members of that island.
     members: Vec<(usize, usize)>,
-    /// Index, in the room, of the stack of every member.
+    /// For each member, the index of its stack in the room.
     stacks: Vec<usize>,
     obstacles: Vec<usize>,
     /// Placement of the frame of the merged island in the room.

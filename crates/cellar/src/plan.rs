@@ -118,7 +118,7 @@ described! {
         pub stack: String,
         /// The side of the room.
         pub side: &'static str ["left", "right", "near", "far"],
-        /// Free distance between the stack and the side of the room.
+        /// Clear distance between the stack and the side of the room.
         pub distance: f64 as "m",
     }
 
@@ -129,7 +129,7 @@ described! {
         pub first: String,
         /// Name of the other stack.
         pub second: String,
-        /// Free distance between the two stacks.
+        /// Clear distance between the two stacks.
         pub distance: f64 as "m",
     }
 

@@ -170,11 +170,11 @@ table! {
     stacks = Kind::Integer(1, 500), Default::Value("1");
     /// Position of the near left corner of the first stack.
     first = Kind::Point(Dimension::LENGTH), Default::Required;
-    /// Free distance between the stacks of a row.
+    /// Clear distance between neighboring stacks of a row.
     spacing = APART, Default::Value("\"0.1 m\"");
-    /// Free distance between rows that stand back to back.
+    /// Clear distance between rows that stand back to back.
     between_rows = APART, Default::Value("\"0.1 m\"");
-    /// Free distance between two groups of rows.
+    /// Clear distance between two groups of rows.
     aisle = APART, Default::Value("\"1.2 m\"");
     /// Number of rows that stand back to back before an aisle follows.
     rows_together = Kind::Integer(1, 500), Default::Value("1");

@@ -14,7 +14,7 @@ use crate::printer;
 /// `true` if the user requested a stop; global, because a program can have only one handler.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// `true` if some piece of work polls the stop request.
+/// `true` if some task polls the stop request.
 static LISTENS: AtomicBool = AtomicBool::new(false);
 
 /// `true` if work has stopped on request, and its finished results are being kept.
@@ -39,11 +39,11 @@ const KEEPING: Duration = Duration::from_secs(30);
 /// Exit status of an interrupted program.
 pub(crate) const STATUS: u8 = 130;
 
-/// Handle through which a piece of work polls for stop requests.
+/// Handle through which a task polls for stop requests.
 pub(crate) struct Interrupt;
 
-/// Number of pieces of work that have started to listen for stop requests.
-static WORKS: AtomicUsize = AtomicUsize::new(0);
+/// Number of tasks that have started to listen for stop requests.
+static TASKS: AtomicUsize = AtomicUsize::new(0);
 
 /// Point of the work at which a test stops the program.
 static STOP_POINT: OnceLock<Option<StopPoint>> = OnceLock::new();
@@ -51,7 +51,7 @@ static STOP_POINT: OnceLock<Option<StopPoint>> = OnceLock::new();
 /// Point of the work at which a test stops the program. Unlike a time, it does not depend on the
 /// load of the machine.
 ///
-/// The point `2:runs:3` is reached when three runs of the second piece of work are finished.
+/// The point `2:runs:3` is reached when three runs of the second task are finished.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StopPoint {
     work: usize,
@@ -179,7 +179,7 @@ impl Interrupt {
     /// Starts to listen for stop requests; earlier requests count too.
     pub(crate) fn listen() -> Self {
         LISTENS.store(true, Ordering::Relaxed);
-        WORKS.fetch_add(1, Ordering::Relaxed);
+        TASKS.fetch_add(1, Ordering::Relaxed);
         Self
     }
 
@@ -197,7 +197,7 @@ impl Interrupt {
     #[expect(clippy::unused_self, reason = "callers must listen first")]
     pub(crate) fn reached(&self, things: &str, done: f64) {
         let Some(Some(point)) = STOP_POINT.get() else { return };
-        let here = point.work == WORKS.load(Ordering::Relaxed)
+        let here = point.work == TASKS.load(Ordering::Relaxed)
             && things.contains(&point.things)
             && done >= point.done;
         if here && !REQUESTED.load(Ordering::Relaxed) {

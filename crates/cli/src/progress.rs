@@ -199,7 +199,7 @@ pub(crate) struct Lines {
     last: Option<Mutex<LastLine>>,
 }
 
-/// State of the progress lines for one piece of work.
+/// State of the progress lines for one task.
 struct LastLine {
     /// Time of the last line.
     last: Instant,

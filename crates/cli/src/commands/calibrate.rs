@@ -212,8 +212,8 @@ struct CollapseArgs {
     scenario: String,
     /// Observations: a table of tests (CSV), or statements on the share that fell in an earthquake (TOML).
     file: PathBuf,
-    /// Use only the statement of the TOML file with this id; may be repeated. By default, all statements that state a
-    /// share are used.
+    /// Use only the statement that has this id in the TOML file; may be repeated. By default, all statements that
+    /// give a share are used.
     #[arg(long, value_name = "ID")]
     statement: Vec<String>,
     /// Parameters to find: k and c of barrel-rack (those of rack-ground change in proportion),

@@ -91,7 +91,7 @@ pub(super) fn run(
         (
             args.with_engine.is_some(),
             "--with-engine",
-            "the program in that page simulates only single stacks",
+            "the program inside that HTML file simulates only single stacks",
         ),
         (args.verify, "--verify", "only the run of a single stack can be repeated as a check"),
     ] {

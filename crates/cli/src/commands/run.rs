@@ -45,7 +45,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     if scenario.is_spatial() && args.with_engine.is_some() {
         bail!(
-            "--with-engine: the program in that page simulates planar scenarios, but not three-dimensional ones; \
+            "--with-engine: the program inside that HTML file simulates planar scenarios, but not three-dimensional ones; \
              leave this option out{}",
             if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
         );

@@ -1086,7 +1086,7 @@ class StackFields(TypedDict, total=False):
     given otherwise.
     """
     gap: Quantity
-    """Free distance between racks side by side. Default: 0.05 m."""
+    """Clear distance between racks side by side. Default: 0.05 m."""
     isolator: "IsolatorFields"
     """Isolators under the bottom racks."""
     levels: int

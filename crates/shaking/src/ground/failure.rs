@@ -12,7 +12,7 @@ pub enum GroundError {
     Unreadable {
         /// Path of the file that cannot be opened.
         path: PathBuf,
-        /// Message of the operating system.
+        /// Error message from the operating system.
         reason: String,
         /// Advice on obtaining the file, worded so that it can follow `reason`; may be empty.
         obtain: String,

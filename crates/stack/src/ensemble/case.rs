@@ -46,7 +46,7 @@ pub struct CaseResult {
     pub falls: Vec<(String, Option<f64>)>,
     /// Largest drop (m) of each fallen barrel, in the order of the barrels.
     pub fall_heights: Vec<f64>,
-    /// Largest force (N) on each fallen barrel after its fall.
+    /// Largest force (N) on each fallen barrel from the time at which it counts as fallen, including its impact.
     pub fall_forces: Vec<f64>,
     /// Volume of wine (m³) in each fallen barrel.
     pub fall_wine: Vec<f64>,

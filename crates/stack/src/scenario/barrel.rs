@@ -84,7 +84,7 @@ known! {
     /// Nominal volume of the barrel.
     capacity: f64 = Kind::Quantity(&[Dimension::VOLUME], Range::up_to(100.0)), CATALOG;
     /// Diameter of the circle that represents the barrel in the plane across the barrels.
-    section_diameter: f64 = SIZE, Default::Derived("the diameter of the barrel above the rails of the rack");
+    section_diameter: f64 = SIZE, Default::Derived("the diameter of the barrel where it rests on the rails of the rack");
     /// Force between a barrel and a rack at which the staves are crushed. The default is an assumption: 4.3 MPa, the
     /// strength of white oak across the grain (Record 1914), over two contact areas of 10 cm by 5 cm, one under each
     /// rail.

@@ -120,7 +120,8 @@ pub struct FreeScene {
 }
 
 impl FreeBody {
-    /// Returns the kind, shape and nodes of every boundary of the body, beginning with the shape of the body itself.
+    /// Returns kind, shape (if the boundary has one) and nodes of each boundary of the body: first its own outline, then the
+    /// additional boundaries.
     pub fn outer(&self) -> impl Iterator<Item = (&str, Option<&Shape>, &Nodes)> {
         let own = (self.kind.as_str(), Some(&self.shape), &self.nodes);
         let further = self.boundaries.iter().map(|b| (b.kind.as_str(), b.shape.as_ref(), &b.nodes));

@@ -49,7 +49,7 @@ pub struct StackSpec {
     pub rack: Rack,
     /// `true` if the whole stack is mirrored left to right.
     pub mirror: bool,
-    /// Free distance between racks side by side (m).
+    /// Clear distance between racks side by side (m).
     pub gap: f64,
     /// Protective devices.
     pub devices: Devices,
@@ -198,7 +198,7 @@ const OWN: [Field; 9] = fields! {
     rack = Kind::ChoiceOrTable(catalog::rack_names, "base", &RACK), Default::Derived("two-barrel");
     /// True to mirror the stack left to right.
     mirror = Kind::Flag, Default::Value("false");
-    /// Free distance between racks side by side.
+    /// Clear distance between racks side by side.
     gap = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"0.05 m\"");
 };
 
