@@ -123,7 +123,7 @@ pub struct Party<'a> {
 /// If two bodies have the same name.
 ///
 /// # Panics
-/// If the number of contact kinds of a party differs from the number of its bodies, or if there is no party.
+/// If the `kinds` of a party do not have exactly one entry for each of its bodies, or if there is no party.
 pub fn joined(
     parties: &[Party<'_>],
     crossing: &Arc<Crossing>,
@@ -198,20 +198,20 @@ pub struct Source<'a> {
     pub frame: Frame,
 }
 
-/// Bodies and elements that are carried over.
+/// Bodies and force elements of one source that [`carry`] copies into the new model.
 #[derive(Clone, Debug)]
 pub struct Carry {
     /// Index of the source in the list of sources.
     pub source: usize,
-    /// The bodies in the source.
+    /// IDs of the bodies in the source.
     pub bodies: Range<BodyId>,
     /// ID of the first of these bodies in the new model.
     pub to: BodyId,
-    /// The elements in the source, which keep their order.
+    /// Indices of the force elements in the source; the elements keep their order.
     pub elements: Range<usize>,
 }
 
-/// A run between two steps.
+/// A run between two steps, as returned by [`carry`].
 #[derive(Clone, Debug)]
 pub struct Running {
     /// The state.

@@ -33,7 +33,7 @@ pub struct Contact<S: Space> {
     pub normal: S::Vector,
     /// Penetration (m), never negative.
     pub penetration: S::Real,
-    /// Penetration rate (m/s), positive while approaching.
+    /// Penetration rate (m/s), positive while the bodies approach each other.
     pub penetration_rate: S::Real,
     /// Compressive force (N), never negative.
     pub normal_force: S::Real,
@@ -57,9 +57,9 @@ pub struct ContactTotals<R> {
 /// The energy ledger multiplies these forces by the displacement of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct Losses<S: Space> {
-    /// Forces of the dampers of contacts and elements.
+    /// Total force of the dampers of contacts and force elements.
     pub damped: Wrench<S>,
-    /// Friction, including the tangential damping of sticking contacts.
+    /// Total friction, including the tangential damping of sticking contacts.
     pub friction: Wrench<S>,
 }
 
@@ -130,7 +130,7 @@ pub struct Scratch<S: Space> {
     pub(crate) is_hard: <S::Real as Real>::Mask,
     /// Time (s) over which impacts are predicted; zero in lanes whose steps are never divided.
     pub(crate) lookahead: S::Real,
-    /// Relative kinematics of the last pair, reused for other node sets of the same contactor at the same surface.
+    /// Relative kinematics of the last pair; reused if the next pair has the same bodies and the same surface.
     kinematics: Option<PairKinematics<S>>,
     /// Accelerations at the start of the step, for methods that correct their predictions.
     pub(crate) old_accelerations: Vec<Twist<S>>,
@@ -226,7 +226,7 @@ impl<S: Space> Scratch<S> {
     }
 
     /// Renumbers the elements for a new list; `origins` contains, for every element of the new list, its index in the
-    /// old list.
+    /// old list, or `None` if the old list does not contain the element.
     ///
     /// No contact is lost, since every list contains all touching elements.
     pub(crate) fn renumber(&mut self, origins: &[Option<usize>]) {
@@ -282,7 +282,8 @@ pub(crate) fn evaluate_within<S: Space>(
     );
 }
 
-/// Fills a slice with defaults; unlike `fill`, this loop is compiled for the vector unit.
+/// Sets every element of a slice to the default of its type. This function is always inlined, so its loop, unlike
+/// that of `fill`, is compiled for the vector unit.
 #[inline(always)]
 fn wipe<T: Default>(all: &mut [T]) {
     for one in all {
@@ -336,7 +337,7 @@ fn act<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     }
 }
 
-/// Resets `scratch`, and computes the rotations of the state.
+/// Resets `scratch`, and computes the rotation of every body from its orientation.
 #[inline(always)]
 fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     for (rotation, pose) in scratch.rotations.iter_mut().zip(&state.poses) {

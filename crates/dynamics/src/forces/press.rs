@@ -186,7 +186,7 @@ fn leads<S: Space>(model: &Model<S>, pair: &ContactPair) -> <S::Real as Real>::M
     if pair.contactor < pair.target { other.le(own) } else { other.lt(own) }
 }
 
-/// Accumulator for the contact forces of one pair, whose nodes press into a surface.
+/// Accumulator for the contact forces of one pair: nodes of the contactor against a surface of the target.
 struct Press<'a, S: Space, L> {
     /// Copy of [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) for the interface; `None`
     /// if it is infinite.
@@ -360,7 +360,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Adds the forces of a node at `node` (m, in the frame of the target's surface), which penetrates in at least one
     /// lane.
     ///
-    /// Returns the energy (J) that the spring of the node would store if its share were 1.
+    /// The forces and the stored energy are multiplied by `share`. Returns the energy (J) without this factor.
     #[inline(always)]
     fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>, share: S::Real) -> S::Real {
         let gap = counting(self.counted, gap);
@@ -465,7 +465,8 @@ fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vecto
 struct RollingPair<R> {
     /// Copy of [`Rolling::lever`].
     lever: R,
-    /// `√(ω² + ω₀²)` (rad/s): the divisor of the spin in the rolling resistance.
+    /// `√(ω² + ω₀²)` (rad/s), with the relative spin ω and the constant ω₀ ([`Rolling::spin`]): the divisor of the spin
+    /// in the rolling resistance.
     scale: R,
 }
 

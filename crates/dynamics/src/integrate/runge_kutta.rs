@@ -17,7 +17,8 @@ pub(super) struct Tableau {
     rows: &'static [&'static [f64]],
     /// Weights of the stages in the step.
     weights: &'static [f64],
-    /// Weights of the stages in the embedded result; the rates at the new state count as one additional stage.
+    /// Weights of the stages in the embedded result, where the rates at the new state count as one additional stage;
+    /// `None` for a method without an embedded result.
     embedded: Option<&'static [f64]>,
 }
 
@@ -295,7 +296,7 @@ fn momentum<S: Space>(
     Twist { linear: twist.linear, angular: S::momentum(inertia, rotation, twist.angular) }
 }
 
-/// Converts the result of [`momentum`] back to a twist, for a body with the given orientation.
+/// Inverse of [`momentum`]: replaces the momentum by the spin, for a body with the given orientation.
 #[inline(always)]
 fn of_momentum<S: Space>(
     model: &Model<S>,

@@ -8,7 +8,7 @@ use crate::shape::{Bearing, Gap, Patch, Points, Spread, Touch};
 use crate::space::{Linear, Space, Wrench};
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// Adds the forces of a patch. The elements with its tangential springs start at the index `first` of the list.
+    /// Adds the forces of a patch. Its tangential springs are those of the contact elements from the index `first` on.
     #[inline(always)]
     pub(super) fn patch(&mut self, first: usize, patch: &Patch<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -152,8 +152,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.resist_rolling(normal_force);
     }
 
-    /// Adds the forces of points that act like parallel springs. The elements with their tangential springs start at
-    /// the index `first` of the list.
+    /// Adds the forces of points that act like parallel springs. Their tangential springs are those of the contact
+    /// elements from the index `first` on.
     ///
     /// Friction acts at two points on each of the [`Points::axes`], one on either side of the center of pressure. Their
     /// distance from the center is the root-mean-square distance of the bearing points from it. So friction transfers

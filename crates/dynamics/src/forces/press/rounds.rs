@@ -15,8 +15,8 @@ const SLACK: f64 = 1e-9;
 /// other body's corner at that end. A corner that is farther from the end always counts in full.
 const COMPANION: f64 = 0.01;
 
-/// Sine of the largest angle, about 45°, by which the direction toward a side may lie outside the limits of a round
-/// piece that faces the side.
+/// Sine of an angle of about 45°. A round piece faces a side of the other body if the direction toward that side lies
+/// outside the [limits](Round::limits) of the piece by at most this angle.
 const FACES: f64 = 0.7;
 
 /// Distance (m) outside the core of the other body up to which the center of a round piece is treated as inside the
@@ -29,7 +29,7 @@ const NEARLY_INSIDE: f64 = 1e-5;
 const LIMIT: f64 = 2e-7;
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// Adds the contacts of the round pieces of a convex boundary, each with its deepest point.
+    /// Adds the contacts of the round pieces of a convex boundary. Each piece is tested at its deepest point.
     ///
     /// A round piece touches a straight side if the normal of the contact lies within the [limits](Round::limits) of
     /// the piece; a limit at which the boundary of the body continues with a straight side does not apply. Two round
@@ -114,8 +114,9 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         surface.bearing(center, &facing, nearest)
     }
 
-    /// Returns the share, from 0 to 1, with which a corner bears on a side of the other body. The share is below 1 only
-    /// near the end of that side, where the other body's corner may bear on a side of this body as well.
+    /// Returns the share, from 0 to 1, by which the forces between a corner and a side of the other body are
+    /// multiplied. The share is below 1 only near the end of that side, where the other body's corner may bear on a
+    /// side of this body as well.
     ///
     /// Where two faces overlap slightly, a corner of each body is inside the other body, one at each end of the
     /// overlap. They are one contact, which splits into two as the overlap grows. Of the two corners, the one nearer to
@@ -154,7 +155,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     }
 }
 
-/// Share, from 0 to 1, with which a corner bears on a side, and its derivative.
+/// Share, from 0 to 1, by which the forces between a corner and a side are multiplied, and its derivative.
 struct Share<R> {
     value: R,
     /// Derivative of the share (1/m) with respect to the distance to the end of the side. Since the energy changes with

@@ -1,4 +1,5 @@
-//! Rows of nodes that act as one seat.
+//! Rows of nodes that act as one seat: the contact constants are those of the whole row, not of a node
+//! ([`Basis::Seat`](crate::contact::Basis::Seat)).
 //!
 //! The depth of the seat is that of its deepest node. The contact laws are evaluated at this depth, and their forces
 //! are divided among the touching nodes in proportion to the depths of the nodes. So the number of nodes affects the
@@ -20,7 +21,7 @@ pub(super) fn counting<S: Space>(counted: Option<AtFace<S>>, mut gap: Gap<S>) ->
     gap
 }
 
-/// A row of nodes that acts as one seat.
+/// Depths of a row of nodes that acts as one seat.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Row<R> {
     /// The depth (m) of the deepest node.
@@ -40,7 +41,8 @@ impl<R: Real> Row<R> {
 }
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// Adds the forces of a node of a row that acts as one seat.
+    /// Adds the forces of one node of a row that acts as one seat. They are a share of the forces of the row, in
+    /// proportion to the depth of the node.
     #[inline(always)]
     pub(super) fn of_row(
         &mut self,
