@@ -10,7 +10,8 @@
 //!    normal are computed.
 //! 3. The normal law turns penetration and its rate into a compressive force.
 //! 4. The friction law turns slip rate and displacement of the tangential spring into a tangential force.
-//! 5. The force acts on both bodies at one point: the middle of the overlap, or the companion point of a fixed node.
+//! 5. The force acts on both bodies at one point: the middle of the overlap or, for a fixed node, the companion point,
+//!    which is the point of the surface from which the penetration is measured.
 //! 6. The sum of the forces of contacts, force elements, gravity and viscous damping gives the accelerations
 //!    ([`evaluate`]).
 //! 7. The integrator repeats 1 to 6 as its method requires and advances poses, twists and displacements of the
@@ -21,8 +22,8 @@
 //! # Signs
 //!
 //! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians. In three dimensions,
-//!   `y` points away from the viewer and rotations are right-handed, so an angle of the plane is a rotation about `-y`.
-//! - The distance of a gap is negative where the bodies penetrate each other; the penetration is never negative.
+//!   `y` points away from the viewer and rotations are right-handed, so an angle in the plane is a rotation about `-y`.
+//! - A gap has a negative distance where the bodies penetrate each other; the penetration is never negative.
 //! - The penetration rate is positive while the bodies approach each other.
 //! - Normals point out of the target.
 //! - Slip is the motion of the contactor relative to the target; on a level floor it is positive to the right.

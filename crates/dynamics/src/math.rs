@@ -8,7 +8,7 @@ pub use libm::{
 
 /// Returns sine and cosine of an angle (rad) for one number or a bundle of lanes.
 ///
-/// The angle is reduced to the nearest multiple of π/2 in three parts (Cody and Waite), and sine and cosine of the
+/// The nearest multiple of π/2 is subtracted from the angle in three parts (Cody and Waite), and sine and cosine of the
 /// remainder are evaluated with the minimax polynomials of the FreeBSD mathematics library. The measured error is below
 /// 1 ulp for |angle| up to 1e5 rad, which exceeds the rotation of any barrel.
 #[inline(always)]

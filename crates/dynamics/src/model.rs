@@ -62,11 +62,12 @@ pub struct Substepping<R> {
     pub substeps: R,
     /// For every interface, the penetration (m) above which a time step is divided; infinite for no limit.
     pub whole_step_depth: Vec<R>,
-    /// Amount (m) by which a contact at rest may exceed [`whole_step_depth`](Self::whole_step_depth) before a step is
-    /// divided. For a contact at rest, an undivided step must only be stable; for an impact, it must also be accurate.
+    /// Amount (m) by which the penetration of a contact at rest may exceed [`whole_step_depth`](Self::whole_step_depth)
+    /// before a step is divided. For a contact at rest, an undivided step must only be stable; for an impact, it must
+    /// also be accurate.
     pub resting_allowance: R,
-    /// Gap (m) below which impacts are predicted. If a larger gap closes within the lookahead, the impact is detected
-    /// late. [`FORESEEN`] suits stacks.
+    /// Gap (m) below which impacts are predicted. If a larger gap closes within the time over which impacts are
+    /// predicted, the impact is detected late. [`FORESEEN`] suits stacks.
     pub foreseen_gap: R,
     /// Additional rules for fast contacts of [`Nodes::Whole`]; `None` to disable them.
     pub fast: Option<Fast<R>>,
@@ -165,8 +166,8 @@ impl<S: Space> Model<S> {
     /// `gravity` is the gravitational acceleration (m/s²).
     ///
     /// # Errors
-    /// If two bodies have the same name, if a free body has no mass, no inertia or an unbounded surface, or if a pair
-    /// refers to a missing item.
+    /// If two bodies have the same name, if the mass or a moment of inertia of a free body is not positive and finite,
+    /// if a free body has an unbounded surface, or if a pair refers to a missing item.
     pub fn new(
         bodies: Vec<Body<S>>,
         interfaces: Vec<Interface<S>>,
@@ -187,7 +188,7 @@ impl<S: Space> Model<S> {
     /// As [`Model::new`].
     ///
     /// # Panics
-    /// If the number of kinds differs from the number of bodies.
+    /// If `kinds` does not have exactly one entry for each body.
     pub fn of_kinds(
         bodies: Vec<Body<S>>,
         interfaces: Vec<Interface<S>>,
@@ -378,7 +379,7 @@ impl<S: Space> Model<S> {
     }
 }
 
-/// Returns, for every body, the first body with equal boundaries and equal reach.
+/// Returns, for every body, the first body with equal boundaries and equal [`Body::reach`].
 fn alike<S: Space>(bodies: &[Body<S>], reach: &[f64]) -> Vec<BodyId> {
     let mut firsts: BTreeMap<u64, Vec<BodyId>> = BTreeMap::new();
     let first = |(id, body): (BodyId, &Body<S>)| {

@@ -80,8 +80,9 @@ impl<S: Space> PairFrame<S> {
         }
     }
 
-    /// Returns how far (m) the other body's center of mass lies in front of the face that filters the contacts of a
-    /// pair; `None` for [`Counts::Everywhere`].
+    /// Returns the distance (m) by which the other body's center of mass lies in front of the face that filters the
+    /// contacts of a pair; negative behind the face. The other body is the one without this face. Returns `None` for
+    /// [`Counts::Everywhere`].
     #[inline(always)]
     pub(crate) fn before(&self, model: &Model<S>, pair: &ContactPair) -> Option<S::Real> {
         let apart = self.target - self.contactor;

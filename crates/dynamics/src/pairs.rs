@@ -14,7 +14,7 @@ pub(crate) enum Pairs {
     Listed {
         /// The pairs.
         pairs: Vec<ContactPair>,
-        /// Ranges of the pairs that have the same two bodies, in order.
+        /// For every two bodies with pairs, the range of these pairs; in ascending order of the bodies.
         couples: Vec<Couple>,
     },
     /// The pairs of two bodies depend only on the kinds of the bodies. So no list of all pairs is stored; its length
@@ -33,7 +33,7 @@ pub(crate) enum Pairs {
     Joined {
         /// The pairs within parties. The pairs between parties have higher indices.
         pairs: Vec<ContactPair>,
-        /// Ranges of the pairs within parties.
+        /// For every two bodies with pairs within a party, the range of these pairs; in ascending order of the bodies.
         couples: Vec<Couple>,
         /// Pairs between parties.
         foreign: Foreign,
@@ -82,12 +82,12 @@ impl Foreign {
 /// target.
 pub type TellMeeting<'a> = dyn FnMut(&ContactPair, &[BodyId], &[BodyId]) + 'a;
 
-/// Two bodies, and the range of their pairs in the list.
+/// Two bodies, and the range of their pairs in the list of pairs.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Couple {
     /// The two bodies, the lower ID first.
     bodies: [BodyId; 2],
-    /// Range of the pairs of the two bodies.
+    /// Range of the indices of their pairs.
     pairs: Range<usize>,
 }
 
@@ -97,7 +97,8 @@ fn between(pair: &ContactPair) -> [BodyId; 2] {
 }
 
 impl Pairs {
-    /// Creates a list from pairs in any order.
+    /// Creates [`Pairs::Listed`] from pairs in any order: sorts the pairs, removes duplicates and groups the pairs by
+    /// their two bodies.
     pub(crate) fn listed(mut pairs: Vec<ContactPair>) -> Self {
         pairs.sort_unstable_by_key(|pair| (between(pair), *pair));
         pairs.dedup();
@@ -173,7 +174,7 @@ impl Pairs {
         }
     }
 
-    /// Returns the index of a pair, given by its bodies, node set and surface; the interface is ignored.
+    /// Returns the index of a pair, or `None` if there is no such pair. The interface is ignored.
     pub(crate) fn number_of(&self, pair: &ContactPair) -> Option<usize> {
         let found = |number: &usize| {
             let at = self.get(*number);

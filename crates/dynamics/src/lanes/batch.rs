@@ -47,7 +47,8 @@ pub trait Batch<'a, S: Space> {
     /// Ground motion of a case.
     type Drive: Drive<S::Single>;
 
-    /// Returns the next case for a lane; all cases of a batch must have the same [`Topology`](super::Topology).
+    /// Returns the next case for a lane, or `None` to leave the lane without a case. All cases of a batch must have the
+    /// same [`Topology`](super::Topology).
     fn next(&mut self, lane: usize) -> Option<Case<'a, S::Single, Self::Drive>>;
 
     /// Called when a case starts, with the initial state and its forces. The prescribed bodies have already been moved

@@ -216,7 +216,7 @@ mod tests {
     use crate::lanes::{Task, Width};
     use crate::real::{Mask as _, Real};
 
-    /// Bits of the minimum and the maximum of two numbers.
+    /// Task that returns the bits of the minimum and of the maximum of two numbers.
     struct Extremes(f64, f64);
 
     impl Task for Extremes {
@@ -239,7 +239,7 @@ mod tests {
         }
     }
 
-    /// Bits of the results of all operations on pairs of numbers, one pair for each lane.
+    /// Task that returns the bits of the results of all operations on pairs of numbers; each lane has one pair.
     struct Operations([[f64; 2]; 8]);
 
     impl Task for Operations {

@@ -103,7 +103,7 @@ impl<T: Lanewise, const N: usize> Lanewise for [T; N] {
     }
 }
 
-/// One value for each lane, not used in arithmetic; a single run has one lane.
+/// One value of any type for each lane, for data that is not used in arithmetic. A single run has one lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PerLane<T>(Vec<T>);
 

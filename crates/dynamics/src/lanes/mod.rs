@@ -25,10 +25,10 @@ pub use lanewise::{Lanewise, PerLane};
 pub use topology::Topology;
 pub(crate) use topology::kind;
 
-/// Number of lanes of a bundle, for every vector unit.
+/// Number of lanes of a bundle; the same for every vector unit.
 pub const LANES: usize = 8;
 
-/// Upper bound of the number of lanes of a bundle.
+/// Upper bound on the number of lanes of a bundle.
 const MOST_LANES: usize = 16;
 
 /// Kind of vector unit used for the computation. Without a vector unit, all operations act on scalars; with a vector
@@ -78,7 +78,7 @@ impl Width {
         }
     }
 
-    /// Returns the width with the given [`Width::name`].
+    /// Returns the width with the given [`Width::name`]; `None` if there is no such width.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|width| width.name() == name)
     }

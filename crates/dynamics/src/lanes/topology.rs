@@ -43,9 +43,10 @@ struct BodyKind {
     surfaces: Vec<(Kind, usize)>,
     /// Kind of every node set, and the number of its nodes.
     nodes: Vec<(Kind, usize)>,
-    /// Kind of every hull.
+    /// Kind of every convex solid ([`Nodes::Whole`]).
     hulls: Vec<Kind>,
-    /// For every round piece, `takes_limit`, and which limits and sides are present.
+    /// For every round piece, [`Round::takes_limit`], and which of its [`Round::arc_limits`] and [`Round::sides`] are
+    /// present.
     rounds: Vec<(bool, [bool; 2], [bool; 2])>,
 }
 
