@@ -28,9 +28,9 @@ pub struct Model {
     pub stack: Stack,
     /// For every body except the ground: points (m) of its surface, in the body frame.
     pub surfaces: Vec<Vec<Vec3>>,
-    /// Number of barrels.
+    /// Number of barrels in the stack.
     pub barrels: usize,
-    /// Volume (m³) of the wine.
+    /// Volume (m³) of the wine in all barrels of the stack.
     pub wine: f64,
 }
 
@@ -60,7 +60,7 @@ impl Model {
 /// The plan of a cellar.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Model for each number of levels, in the order of [`Cellar::models`].
+    /// Models, one for each number of levels, in the order of [`Cellar::models`].
     pub models: Vec<Model>,
     /// The stacks in their places, row by row.
     pub stacks: Vec<Standing>,
@@ -239,7 +239,7 @@ impl Plan {
         self.drawn(cellar, &kind)
     }
 
-    /// Returns the plan as a picture; `kind` returns how each stack is drawn.
+    /// Returns the plan as a picture. For the index of a stack, `kind` returns how the stack is drawn.
     pub(crate) fn drawn(&self, cellar: &Cellar, kind: &dyn Fn(usize) -> RegionKind) -> FloorPlan {
         let RoomSpec { length, width, .. } = cellar.room;
         let mut regions: Vec<Region> = cellar
@@ -592,7 +592,8 @@ impl Obstacles<'_> {
         }
     }
 
-    /// `true` if a path as wide as a person leads through a zone along its longer side.
+    /// `true` if a path as wide as a person leads through an aisle along its longer side. The aisle is the rectangle
+    /// with the opposite corners `from` and `to`.
     pub(crate) fn is_passable(&self, from: Point, to: Point) -> bool {
         let axis = usize::from(to[1] - from[1] > to[0] - from[0]);
         let half = 0.5 * PASSAGE;
@@ -607,7 +608,8 @@ impl Obstacles<'_> {
         grid.leads(|point| point[axis] < from[axis] + cell, |point| point[axis] > to[axis] - cell)
     }
 
-    /// Returns the share of a zone that is covered.
+    /// Returns the share of the area of an aisle that the footprints cover. The aisle is the rectangle with the
+    /// opposite corners `from` and `to`.
     pub(crate) fn covered(&self, from: Point, to: Point) -> f64 {
         let mut grid = Grid::new(from, to, 0.05);
         for polygon in &self.taken {
@@ -616,7 +618,8 @@ impl Obstacles<'_> {
         grid.share()
     }
 
-    /// Returns the clear width (m) of a zone at its narrowest cross section.
+    /// Returns the clear width (m) of an aisle at its narrowest cross section. The aisle is the rectangle with the
+    /// opposite corners `from` and `to`.
     fn narrowest(&self, from: Point, to: Point) -> f64 {
         let axis = usize::from(to[1] - from[1] > to[0] - from[0]);
         let across = 1 - axis;

@@ -90,7 +90,7 @@ impl StackEnd {
     }
 }
 
-/// A meeting of two stacks: their bodies have touched.
+/// The contact between the bodies of two stacks during a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting {
     /// The two stacks, the lower index first.
@@ -101,7 +101,7 @@ pub struct Meeting {
     pub bodies: [usize; 2],
     /// Impulse (N·s) between the two stacks over the whole run, as the sum of magnitudes.
     pub impulse: f64,
-    /// Largest force (N) between the two stacks.
+    /// Largest magnitude (N) of the force between the two stacks.
     pub peak: f64,
 }
 
@@ -112,9 +112,9 @@ pub struct ObstacleEnd {
     pub name: String,
     /// Time (s) of the first contact, and index of the body in [`RoomRun::bodies`].
     pub first: Option<(f64, usize)>,
-    /// Largest total force (N).
+    /// Largest magnitude (N) of the total force on the obstacle.
     pub peak: f64,
-    /// Impulse (N·s) along the axes of the room.
+    /// Components (N·s), along the axes of the room, of the impulse on the obstacle over the whole run.
     pub impulse: [f64; 3],
     /// Times (s) and total forces (N) along the axes of the room, at every accepted step with a contact. The steps just
     /// before and after a contact, at which the force is zero, are included.
@@ -124,7 +124,8 @@ pub struct ObstacleEnd {
 /// Frames of one stack, without the ground.
 #[derive(Clone, Debug, Default)]
 pub struct RoomFrames {
-    /// Times (s). A stack at rest has no further frames: its bodies stay where they are.
+    /// Times (s) of the frames. A stack that has come to rest has no further frames, because its bodies stay where
+    /// they are.
     pub times: Vec<f64>,
     /// For every frame and body of the stack, position (m) and quaternion in the room, relative to the ground.
     pub poses: Vec<Vec<[f64; 7]>>,
@@ -137,15 +138,15 @@ pub struct RoomFrames {
 pub struct RoomRun {
     /// All bodies except the ground, stack by stack.
     pub bodies: Vec<BodyEnd>,
-    /// The stacks, in the order of the room.
+    /// The stacks, in the order of [`Room::stacks`](crate::Room::stacks).
     pub stacks: Vec<StackEnd>,
     /// All pairs of stacks that have touched each other, in the order of their first contacts.
     pub meetings: Vec<Meeting>,
-    /// The obstacles, in the order of the room.
+    /// The obstacles, in the order of [`Room::obstacles`](crate::Room::obstacles).
     pub obstacles: Vec<ObstacleEnd>,
     /// Frames of every stack; empty unless requested.
     pub frames: Vec<RoomFrames>,
-    /// Energy balance of all islands; `None` if numbers are no longer finite.
+    /// Energy balance, summed over all islands; `None` if the motion of a body has become infinite or NaN.
     pub energy: Option<EnergySummary>,
     /// Numbers of time steps and force evaluations, summed over all islands.
     pub work: Work,
@@ -155,7 +156,8 @@ pub struct RoomRun {
     pub end_time: f64,
     /// `true` if the observer stopped the run.
     pub interrupted: bool,
-    /// Warnings, one sentence each, with the name of the stack that a warning concerns.
+    /// Warnings, one sentence each, preceded by the name of the stack that the warning concerns; `None` instead of the
+    /// name if a warning concerns the whole room.
     pub warnings: Vec<(Option<String>, String)>,
     /// For a sequence, the runs of its shocks, each with its own clock; empty for a single shock.
     pub shocks: Vec<RoomRun>,

@@ -26,8 +26,8 @@ pub struct Placed {
     /// `true` if an earlier run of the same room ended in the poses of `start`. Bodies may then overlap by any depth,
     /// because loads press them into each other. If the poses were stated instead, a deep overlap is an error.
     pub carried_on: bool,
-    /// Shifts of bodies before the run, applied in this order to the poses of `start` if they are given, otherwise to
-    /// the poses at rest.
+    /// Shifts of bodies before the run. They are applied one after another to the poses of `start` or, if `start` is
+    /// `None`, to the poses at rest.
     pub shifts: Vec<Shift>,
 }
 
@@ -62,7 +62,7 @@ pub struct Obstacle {
     pub half: [f64; 3],
     /// Angle (rad) by which the block is turned counterclockwise about the vertical.
     pub azimuth: f64,
-    /// Contact laws between the block and every body.
+    /// Contact law between the block and any body.
     pub interface: Interface<Spatial>,
 }
 
@@ -79,7 +79,7 @@ pub struct Room {
 }
 
 impl Room {
-    /// Returns the number of bodies of all stacks.
+    /// Returns the total number of bodies in all stacks, without the ground.
     pub fn bodies(&self) -> u64 {
         let of = |placed: &Placed| match &placed.scenario.scene {
             Scene::Stack { stack, .. } => {
@@ -135,7 +135,7 @@ pub enum RoomFailure {
     /// Two stacks or obstacles have the same name.
     #[error("two stacks or obstacles are named \"{name}\": give each its own name")]
     Name {
-        /// The name.
+        /// The name that occurs twice.
         name: String,
     },
     /// A stack cannot be built, or does not stand.

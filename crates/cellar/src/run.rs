@@ -1,5 +1,5 @@
-//! Run of a room: islands advance in parallel in short windows of time, and islands that come near each other are
-//! merged.
+//! Run of a room. An island is a group of stacks that advance together; each stack is an island of its own at the
+//! start. Islands advance in parallel in short windows of time, and islands that come near each other are merged.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -71,7 +71,7 @@ pub fn run(
     Ok(result(&world, islands, &places, merges, interrupted))
 }
 
-/// Checks that stacks and obstacles of a room do not overlap where they start, without a run.
+/// Checks that the stacks and obstacles of a room do not overlap at the start. The room is not run.
 ///
 /// # Errors
 /// As for [`run`].
@@ -82,7 +82,7 @@ pub(crate) fn check_overlaps(room: &Room) -> Result<(), RoomFailure> {
 
 struct Running<'a> {
     world: &'a World<'a>,
-    /// The islands, each at the index of one of its stacks.
+    /// The islands, each at the smallest index of its stacks; `None` at the indices of its other stacks.
     islands: Vec<Option<Island>>,
     places: Places,
     nearby: Nearby,
@@ -90,7 +90,7 @@ struct Running<'a> {
 }
 
 impl<'a> Running<'a> {
-    /// Starts every stack as an island of its own, which records frames at an interval (s).
+    /// Creates one island for each stack. The islands record frames at the interval `every` (s); `None` for no frames.
     fn start(world: &'a World<'a>, every: Option<f64>) -> Self {
         let alone = |stack| Some(Island::alone(world, stack, every));
         let islands: Vec<Option<Island>> = (0..world.stacks.len()).map(alone).collect();
@@ -187,7 +187,7 @@ impl<'a> Running<'a> {
         Ok(())
     }
 
-    /// Starts the window of an island.
+    /// Starts a time window for the island `number`, and limits how far each of its bodies may move in the window.
     fn open(&mut self, number: usize) {
         let (tubes, near) = self.nearby.limit(self.world, &self.islands, &self.places, number);
         if let Some(island) = &mut self.islands[number] {
@@ -233,7 +233,8 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Merges the islands and obstacles of all meetings; returns the merged islands.
+    /// Merges islands such that the two parties of each meeting, bodies or obstacles, belong to the same island.
+    /// Returns the indices of the merged islands.
     fn merge_all(&mut self, meetings: &[[Owner; 2]]) -> Result<Vec<usize>, RoomFailure> {
         // Every island points to an island of its group; the first island of a group points to itself.
         let mut group: Vec<usize> = (0..self.islands.len()).collect();

@@ -1,4 +1,5 @@
-//! Variants of a room: every stack draws its own imperfections, and all share the motion and the unknown constants.
+//! Variants of a room. In one variant, every stack has its own random imperfections; the motion and the randomly drawn
+//! contact constants are the same for all stacks.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -152,8 +153,8 @@ impl Prepared {
         })
     }
 
-    /// Returns a stack with the random draws of a variant. All stacks of the variant have the same constants, but each
-    /// stack has its own imperfections.
+    /// Returns the scenario of a stack with the random draws of a variant applied. All stacks of the variant have the
+    /// same randomly drawn contact constants, but each stack has its own imperfections.
     fn drawn(&self, standing: &Standing, variant: u32) -> Result<Scenario, CellarFailure> {
         let stated = &self.cellar.models[standing.model];
         if variant == 0 {
@@ -211,7 +212,8 @@ impl Prepared {
         Ok((room, first))
     }
 
-    /// Runs the shocks after the first in a room, and returns the runs of all shocks as one run.
+    /// Runs the shocks after the first, and returns the runs of all shocks joined into one run. `room` is the room of
+    /// the variant, and `first` the run of its first shock.
     ///
     /// # Errors
     /// As for [`Prepared::run`].
@@ -292,13 +294,13 @@ impl Prepared {
         self.cellar.host.error(&[&stated.path], message).into()
     }
 
-    /// Runs variants, several at a time; the result of a variant that was interrupted is `None`. Results that are
-    /// already in the folder are read, and new results are written as soon as they are finished.
+    /// Runs variants, several at a time; the result of a variant that was interrupted is `None`. If `kept` is given,
+    /// results that are already in its folder are read, and each new result is written as soon as it is available.
     ///
     /// The observer receives the number of finished variants, from several threads, and may stop the work.
     ///
     /// # Errors
-    /// If a variant cannot be run, or its result cannot be kept.
+    /// If a variant cannot be run, or a result cannot be read from the folder or written to it.
     pub fn cases(
         &self,
         numbers: &[u32],
@@ -327,8 +329,8 @@ impl Prepared {
         Case { shocks: shocks.collect(), ..self.shock(variant, run, self.onset) }
     }
 
-    /// Returns the result of a run of a variant, either of one shock or of all shocks joined. `onset` is the time (s)
-    /// in the run at which the shaking starts.
+    /// Returns the result of a variant, without results of its single shocks. `run` is the run of one shock, or the
+    /// joined run of all shocks. `onset` is the time (s) in the run at which the shaking starts.
     fn shock(&self, variant: u32, run: &RoomRun, onset: f64) -> Case {
         let outlines = self.outlines(run, |body| &body.to);
         let stacks: Vec<StackCase> = run.stacks.iter().map(|end| stack_case(run, end)).collect();
@@ -382,8 +384,8 @@ impl Prepared {
         run.stacks.iter().enumerate().flat_map(|stack| of(stack).collect::<Vec<_>>()).collect()
     }
 
-    /// Returns the result of a run in the aisle between two corners, `from` and `to` (m). `end` contains the bodies in
-    /// their final poses. `onset` is the time (s) in the run at which the shaking starts.
+    /// Returns the result of a run for an aisle, a rectangle with the opposite corners `from` and `to` (m). `end`
+    /// contains the bodies in their final poses. `onset` is the time (s) in the run at which the shaking starts.
     fn aisle(
         &self,
         from: [f64; 2],
@@ -467,12 +469,13 @@ impl Prepared {
     }
 }
 
-/// Function that processes one variant; its arguments are the number of the variant, the number of threads, and
-/// the observer. Returns `None` if the work was interrupted.
+/// Function that processes one variant. Its arguments are the variant number, the number of threads, and the observer.
+/// It returns `None` if the work was interrupted.
 pub(crate) type OfVariant<'a, T> =
     &'a (dyn Fn(u32, usize, Observer<'_>) -> Result<Option<T>, CellarFailure> + Sync);
 
-/// Calls a function for each variant, for several variants at a time, like [`Prepared::cases`].
+/// Calls the function `one` for each of the variants `numbers`, several at a time, and returns its results. The
+/// observer is called as in [`Prepared::cases`].
 ///
 /// # Errors
 /// The first error that the function returns.
@@ -508,7 +511,7 @@ pub(crate) fn each<T: Send>(
     pool::map(numbers, work, &|_| ()).into_iter().collect()
 }
 
-/// Resolution (s) of the time from which an aisle stays blocked.
+/// Step (s) of the backward search for the time from which an aisle stays blocked.
 const BLOCKED: f64 = 0.25;
 
 fn drawn(scenario: &Scenario, variant: u32) -> Result<Scenario, CellarFailure> {
@@ -604,13 +607,14 @@ pub struct Case {
     pub obstacles: Vec<ObstacleCase>,
     /// For each cell of the map, `true` if a fallen barrel covers it at the end.
     pub map: Vec<bool>,
-    /// Time (s) at which the last body came to rest.
+    /// Time (s) at which the run of the last stack ended.
     pub end_time: f64,
     /// `true` if the run ended before all stacks were at rest.
     pub cut_short: bool,
     /// Number of stacks in which a body still moved at the end.
     pub still_moving: usize,
-    /// Warnings, one sentence each, with the name of the stack that a warning concerns.
+    /// Warnings, one sentence each, preceded by the name of the stack that the warning concerns; `None` instead of the
+    /// name if a warning concerns the whole room.
     pub warnings: Vec<(Option<String>, String)>,
     /// For a sequence, the results of its shocks, each with its own clock; empty for a single shock.
     pub shocks: Vec<Self>,
@@ -634,9 +638,9 @@ pub struct StackCase {
     pub touching: Option<[String; 2]>,
     /// Number of barrels that fell.
     pub barrels: usize,
-    /// Expected number of barrels that burst, under the assumptions of [`Breakage::RANGE`].
+    /// Expected numbers of barrels that burst, one for each of the three assumptions in [`Breakage::RANGE`].
     pub burst: [f64; 3],
-    /// Expected loss of wine (m³), under the same assumptions.
+    /// Expected volumes (m³) of wine lost, one for each of the three assumptions in [`Breakage::RANGE`].
     pub wine: [f64; 3],
     /// Largest horizontal displacement (m) at the end of the run, over the bodies that did not fall.
     pub moved: f64,
@@ -652,14 +656,16 @@ impl StackCase {
 /// An aisle in one variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AisleCase {
-    /// Time (s) from the start of the shaking until the center of a barrel is first above the aisle.
+    /// Time (s), counted from the start of the shaking, at which the center of a barrel is first above the aisle.
+    /// `None` if no barrel enters the aisle. Barrels that are above the aisle before the run do not count.
     pub first: Option<f64>,
-    /// Largest speed (m/s) of a barrel while its center is above the aisle.
+    /// Largest speed (m/s) that any barrel counted in `first` has while its center is above the aisle; `None` if no
+    /// barrel enters the aisle.
     pub fastest: Option<f64>,
-    /// Share of the aisle's area that is covered at the end of the run.
+    /// Share of the aisle's area that bodies cover at the end of the run.
     pub covered: f64,
     /// Time (s), counted from the start of the shaking, from which no path as wide as a person leads through the aisle
-    /// any more.
+    /// any more; `None` if there is such a path at the end of the run.
     pub blocked_at: Option<f64>,
 }
 
@@ -668,9 +674,9 @@ pub struct AisleCase {
 pub struct ObstacleCase {
     /// `true` if a body struck the wall or column.
     pub struck: bool,
-    /// Largest force (N).
+    /// Largest magnitude (N) of the total force on the wall or column.
     pub peak: f64,
-    /// Magnitude of the impulse (N·s).
+    /// Magnitude (N·s) of the impulse on the wall or column over the whole run.
     pub impulse: f64,
 }
 

@@ -140,8 +140,8 @@ pub struct Block {
     pub rows: u32,
     /// Number of stacks in a row; they follow each other along x.
     pub stacks: u32,
-    /// Position (m), along x and y, of the near left corner of the first stack (of the bounding rectangle of its
-    /// footprint).
+    /// Position (m), along x and y, of the first stack. It is the near left corner of the bounding rectangle of the
+    /// stack's footprint.
     pub first: [f64; 2],
     /// Clear distance (m) between neighboring stacks of a row.
     pub spacing: f64,
@@ -268,10 +268,10 @@ const LANGUAGE: Language = Language {
 /// Maximum number of barrels in a room. A run keeps all bodies with their frames in memory.
 pub const MOST_BARRELS: u64 = 10_000;
 
-/// Maximum number of columns; also of doors, of aisles and of places.
+/// Maximum number of columns. The same limit applies to doors, to aisles and to places.
 const MOST_ITEMS: usize = 1000;
 
-/// Maximum number of shocks of a sequence. Each shock takes as long as a run.
+/// Maximum number of shocks in a sequence. Each shock requires a run of its own.
 pub const MOST_SHOCKS: usize = 20;
 
 /// A stack in its place.
@@ -590,7 +590,7 @@ impl Cellar {
         Ok(())
     }
 
-    /// Checks the room without its stacks.
+    /// Checks the columns, doors, aisles and places of the room: they must have valid sizes and lie inside the room.
     fn check_items(&self) -> Result<(), ScenarioError> {
         let RoomSpec { length, width, .. } = self.room;
         let inside = |[x, y]: [f64; 2]| (0.0..=length).contains(&x) && (0.0..=width).contains(&y);

@@ -103,24 +103,24 @@ impl StartSpec {
     }
 }
 
-/// Where a stack starts.
+/// Stated initial poses and shifts of the bodies of a stack.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct StackStart {
-    /// Poses of all bodies.
+    /// Stated poses of all bodies of the stack; `None` to start from the poses at rest.
     pub(crate) poses: Option<Vec<[f64; 7]>>,
-    /// Shifts, applied in this order to `poses`, or to the poses at rest if `poses` is `None`.
+    /// Shifts, applied one after another to `poses`, or to the poses at rest if `poses` is `None`.
     pub(crate) shifts: Vec<Shift>,
-    /// Path, in the scenario, of the last entry that moves the stack.
+    /// Key path of the last entry in the cellar file that moves the stack: `start.file`, or a shift such as
+    /// `start.shift.2`.
     pub(crate) path: String,
-    /// Line, in the file of initial poses or shifts, of the last row that moves the stack; `None` if the last entry is
-    /// in the scenario.
+    /// If `path` is `start.file`, the line of that file with the last pose or shift of the stack; otherwise `None`.
     pub(crate) line: Option<usize>,
 }
 
-/// Returns the starts of all stacks that do not start as built, by the name of the stack.
+/// Returns the stated initial poses and shifts of all stacks that do not start as built, by the name of the stack.
 ///
 /// # Errors
-/// If the file cannot be read, or a stack or a body is unknown.
+/// If the file cannot be read or is invalid, or a stack or a body is unknown.
 pub(crate) fn starts(
     start: &StartSpec,
     host: &Host,

@@ -377,7 +377,7 @@ impl Count {
 }
 
 impl Mean {
-    /// Returns the mean of shares and its interval.
+    /// Returns the mean of shares with its 95 % interval. Without shares, the mean is 0 and the interval is 0 to 1.
     fn of(values: &[f64]) -> Self {
         let n = values.len() as f64;
         if values.is_empty() {

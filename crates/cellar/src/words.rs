@@ -14,7 +14,8 @@ pub(crate) fn plural(count: u32, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Formats a share with its interval, such as "28 of 32 variants (88 %, 95 % interval 72 % to 95 %)".
+/// Formats a count out of `of` variants with its share and interval, such as "28 of 32 variants (88 %, 95 % interval
+/// 72 % to 95 %)"; "the only run" or "no run" if `of` is 1.
 pub(crate) fn share(count: &Count, of: u32) -> String {
     if of == 1 {
         return if count.of_variants == 0 { "no run" } else { "the only run" }.to_owned();
@@ -216,7 +217,7 @@ fn ordinal(number: u32) -> String {
     word.map_or_else(|| format!("{number}th"), |word| (*word).to_owned())
 }
 
-/// Returns the sentences on a shock over all variants.
+/// Returns the sentences on a shock over `of` variants; `last` is `true` for the last shock of the sequence.
 fn of_shock(shock: &ShockAnswer, of: u32, last: bool) -> String {
     let motion = shock.motion.as_ref().map_or_else(
         || "ground at rest".to_owned(),
@@ -226,7 +227,7 @@ fn of_shock(shock: &ShockAnswer, of: u32, last: bool) -> String {
     format!("Shock {} ({motion}): {}.{end}", shock.shock, survival(shock, of))
 }
 
-/// Returns a clause on the stacks that survive a shock, with counts and intervals over the variants.
+/// Returns a clause on the stacks that survive a shock, with counts and intervals over `of` variants.
 pub(crate) fn survival(shock: &ShockAnswer, of: u32) -> String {
     let fallen = barrels_fall(&shock.barrels_fallen, of);
     if shock.stood_in == 0 {
@@ -258,7 +259,7 @@ pub(crate) fn survival(shock: &ShockAnswer, of: u32) -> String {
     )
 }
 
-/// Returns a clause on the barrels that fall, such as "5 to 9 barrels fall".
+/// Returns a clause on the range of the number of barrels that fall over `of` variants, such as "5 to 9 barrels fall".
 fn barrels_fall(barrels: &Range, of: u32) -> String {
     match span(barrels, of, 0, "").trim_end() {
         "1" => "1 barrel falls".to_owned(),
@@ -276,7 +277,8 @@ fn survived(shock: &ShockAnswer) -> String {
     }
 }
 
-/// Returns a sentence on the variants in which bodies still move at the end of a shock; empty if there are none.
+/// Returns a sentence that states in how many of `of` variants a body still moves at the end of a shock; empty if there
+/// are none. `last` is `true` for the last shock of the sequence.
 fn still_moving(shock: &ShockAnswer, of: u32, last: bool) -> String {
     if shock.still_moving.of_variants == 0 {
         return String::new();
@@ -527,7 +529,7 @@ fn of_aisle(aisle: &AisleAnswer, of: u32) -> String {
     )
 }
 
-/// Formats the range of a share over a number of variants, in percent.
+/// Formats the range of a share over `of` variants, in percent; one number if both ends round to the same number.
 pub(crate) fn span_of_shares(range: &Range, of: u32) -> String {
     let [low, high] = range.stated(of).map(percent);
     if low == high { low } else { format!("{low} to {high}") }

@@ -38,7 +38,7 @@ pub(crate) struct StackOf<'a> {
     pub(crate) reach: Vec<f64>,
     pub(crate) rank: usize,
     pub(crate) frame: Frame,
-    /// Number of the first body (the ground of the stack) among the bodies of all stacks.
+    /// Index of the first body of the stack, which is its ground, in a list of the bodies of all stacks.
     pub(crate) first: usize,
 }
 
@@ -126,7 +126,7 @@ impl<'a> World<'a> {
         Ok(Self { room, stacks, obstacles, crossing, end_time: end, count: first })
     }
 
-    /// Returns the number of a body or an obstacle; the bodies of all stacks come first, followed by the obstacles.
+    /// Returns the index of a body or an obstacle in a list of the bodies of all stacks, followed by the obstacles.
     pub(crate) fn number(&self, owner: Owner) -> usize {
         match owner {
             Owner::Stack((stack, body)) => self.stacks[stack].first + body,

@@ -81,7 +81,7 @@ fn is_new(path: &Path, option: &str) -> anyhow::Result<()> {
 
 /// Runs a cellar, then prints and writes the result.
 ///
-/// If the result is printed as text, it follows the sentence that `first` returns for the result, if any.
+/// If the result is printed as text, the sentence that `first` returns is printed before it; `None` for no sentence.
 pub(super) fn run(
     args: &RunArgs,
     cellar: Cellar,

@@ -125,7 +125,7 @@ pub(super) fn name(names: &mut Vec<String>, given: &[String]) -> anyhow::Result<
 
 /// Runs all stacks and writes the comparison.
 ///
-/// `requested` holds the arguments of each scenario, to which errors refer.
+/// `requested` holds the arguments of each scenario; error messages refer to them.
 fn stacks(
     args: &CompareArgs,
     requested: &[(String, ScenarioArgs)],

@@ -20,7 +20,7 @@ const AS_IT_IS: &str = "as it is";
 
 /// Runs all layouts and writes the comparison.
 ///
-/// `requested` holds the arguments of each given cellar, to which errors refer.
+/// `requested` holds the arguments of each given cellar; error messages refer to them.
 pub(super) fn compare(
     args: &CompareArgs,
     requested: &[(String, ScenarioArgs)],
