@@ -54,7 +54,7 @@ section! {
 pub struct FreeBody {
     /// Unique name.
     pub name: String,
-    /// Kind by which interfaces refer to the body.
+    /// Name of the kind of the body, by which interfaces refer to it.
     pub kind: String,
     /// Outline of the body.
     pub shape: Shape,
@@ -87,9 +87,10 @@ pub struct FreeBody {
 /// An additional massless boundary of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boundary {
-    /// Kind by which interfaces refer to the boundary.
+    /// Name of the kind of the boundary, by which interfaces refer to it.
     pub kind: String,
-    /// Outline that other bodies touch, relative to the reference point of the body's shape; `None` for nodes only.
+    /// Outline that other bodies touch, relative to the reference point of the body's shape; `None` if the boundary
+    /// has only nodes.
     pub shape: Option<Shape>,
     /// Contact nodes on the boundary.
     pub nodes: Nodes,
@@ -120,8 +121,8 @@ pub struct FreeScene {
 }
 
 impl FreeBody {
-    /// Returns kind, shape (if the boundary has one) and nodes of each boundary of the body: first its own outline, then the
-    /// additional boundaries.
+    /// Returns the kind, the shape (if there is one) and the nodes of each boundary of the body: first its own outline,
+    /// then the additional boundaries.
     pub fn outer(&self) -> impl Iterator<Item = (&str, Option<&Shape>, &Nodes)> {
         let own = (self.kind.as_str(), Some(&self.shape), &self.nodes);
         let further = self.boundaries.iter().map(|b| (b.kind.as_str(), b.shape.as_ref(), &b.nodes));
@@ -132,7 +133,7 @@ impl FreeBody {
 /// Maximum number of bodies of a free scene.
 const MOST_BODIES: usize = 5000;
 
-/// Maximum number of contact nodes of all bodies of a free scene.
+/// Maximum total number of contact nodes in a free scene.
 const MOST_NODES: f64 = 2e6;
 
 table! {
