@@ -76,11 +76,11 @@ pub struct FreeBody {
     pub nodes: Nodes,
     /// Additional boundaries.
     pub boundaries: Vec<Boundary>,
-    /// Name of the group; interfaces can exclude contacts within a group.
+    /// Name of the group; interfaces can exclude contacts within a group. `None` if the body belongs to no group.
     pub group: Option<String>,
     /// `true` if the body moves with the ground.
     pub fixed_to_ground: bool,
-    /// Viscous drag on the body.
+    /// Viscous drag on the body; `None` if there is no drag.
     pub viscous: Option<Viscous>,
 }
 
@@ -191,8 +191,8 @@ table! {
     viscous = Kind::Table(&VISCOUS), Default::Nothing;
 }
 
-/// Returns the error message for a body whose columns would have the same names as those of another body or of the
-/// ground.
+/// Returns the error message for a body whose columns in tables of results would have the same names as those of
+/// another body or of the ground.
 pub(super) fn clash(name: &str, column: &str) -> String {
     format!(
         "the columns of \"{name}\" would be called {column}_…, like those of another body or of the ground; give the \
