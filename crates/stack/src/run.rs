@@ -49,7 +49,8 @@ pub struct Run {
     pub fates: Fates,
     /// Largest forces and failures of all force elements, in the order of the model.
     pub elements: Vec<ElementFate>,
-    /// Normal contact stress along the boundary of every barrel and rack.
+    /// Normal contact stress along the boundary of every barrel and rack: at rest, and the largest values until the
+    /// first loss of seat and over the whole run.
     pub stresses: Stresses,
     /// Frames and histories.
     pub recording: Recording,
@@ -78,7 +79,7 @@ pub struct Work {
     pub steps: u64,
     /// Number of force evaluations.
     pub evaluations: u64,
-    /// Number of contact elements tested for contact, summed over all evaluations.
+    /// Number of contact elements tested for contact, summed over all force evaluations.
     pub contact_evaluations: u64,
 }
 
@@ -91,8 +92,7 @@ pub struct Progress {
     pub end_time: f64,
 }
 
-/// Maximum duration (s) of the ground motion that may be left at the end of a run; if more is left, the run counts as
-/// cut short.
+/// Longest remainder (s) of the ground motion at the end of a run that does not count as cut short.
 pub const CUT: f64 = 0.01;
 
 /// Maximum number of steps of a run; about 10⁵ steps of a stack are computed in a second.
@@ -114,7 +114,8 @@ impl Scenario {
     /// ```
     ///
     /// # Errors
-    /// If the motion cannot be read, the stack cannot be built, or it does not stand.
+    /// If the motion cannot be read, if the stack cannot be built or does not come to rest under its own weight, or if
+    /// the run would be too long or need too much memory.
     pub fn run(&self) -> Result<Run, RunFailure> {
         self.run_watched(&mut |_| ControlFlow::Continue(()))
     }
@@ -155,7 +156,8 @@ impl Scenario {
     /// ```
     ///
     /// # Errors
-    /// If the stack cannot be built, or does not stand.
+    /// If the stack cannot be built or does not come to rest under its own weight, or if the run would be too long or
+    /// need too much memory.
     pub fn run_on(
         &self,
         ground: Ground,
@@ -280,8 +282,8 @@ pub fn thresholds(scenario: &Scenario) -> Thresholds {
 
 /// Returns the latest time (s) at which a run of the scenario ends.
 ///
-/// `motion_end` is the time (s) at which the motion ends, if there is a motion.
-/// `time_scale` is the time scale of similitude.
+/// `motion_end` is the time (s) at which the motion ends, if there is a motion. `time_scale` is the ratio of times in
+/// the model to times at full size; it is 1 for a model at full size.
 ///
 /// # Errors
 /// If neither the scenario nor a motion defines an end.

@@ -240,8 +240,11 @@ struct Solid {
 }
 
 impl Solid {
-    /// Integrates the body between an outer and an inner radius from `-half` to `half` along the axis, by Simpson's
-    /// rule.
+    /// Returns the volume and the second moments of a body between an outer and an inner surface, integrated by
+    /// Simpson's rule.
+    ///
+    /// `outer` and `inner` return the radii (m) at a distance (m) along the axis from the middle. The body extends from
+    /// `-half` to `half` (m) along the axis and is symmetric about its middle.
     fn between(half: f64, outer: impl Fn(f64) -> f64, inner: impl Fn(f64) -> f64) -> Self {
         const INTERVALS: u32 = 200;
         let step = half / f64::from(INTERVALS);
@@ -299,7 +302,7 @@ pub static BARREL: Section = Section {
     exclusive: &[],
 };
 
-/// Reads a barrel on rails at `rail_half_spacing` (m) from its middle.
+/// Reads a barrel that lies on two rails, each at a distance of `rail_half_spacing` (m) from its middle.
 pub(super) fn read(reader: Reader<'_>, rail_half_spacing: f64) -> Result<Barrel, ScenarioError> {
     let base = reader.catalog_name("base")?;
     let Some(known) = catalog::barrel(&base) else { return Err(reader.missing("base")) };

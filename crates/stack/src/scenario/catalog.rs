@@ -113,14 +113,15 @@ pub struct Seat {
 }
 
 /// Ratio of the tangential to the normal stiffness of seats on barrels. Staves bend under normal forces, but are
-/// stiffer against tangential forces, which act in the surface of the staves.
+/// stiffer against tangential forces, which load them in their plane.
 const STICK_ON_BARREL: f64 = 2.0;
 
 /// Ratio of the tangential to the normal stiffness of seats on the floor. Tubes do not lie flat on a floor, so normal
 /// forces bend them. Tangential forces act where steel is in contact with the floor, which is far stiffer.
 ///
-/// Four is the largest ratio that does not require a smaller time step. With this ratio, friction under a stack of five
-/// levels reverses early enough to act like rigid friction.
+/// Four is the largest ratio that does not require a smaller time step. When slip changes direction, the friction force
+/// reverses gradually, while the tangential spring is displaced. With a ratio of four, this displacement is so small
+/// under a stack of five levels that friction acts like rigid friction.
 const STICK_ON_FLOOR: f64 = 4.0;
 
 /// Ratio of the tangential to the normal stiffness of seats on posts. The ratio is smaller than on the floor, because
@@ -148,7 +149,7 @@ pub struct Seats {
 
 impl Seat {
     const fn new(stiffness: f64, mass: f64, stick: f64) -> Self {
-        // Full barrels of 270 kg were observed to bounce clearly, and the measurements of the paper on barrels and
+        // Full barrels of 270 kg were observed to bounce visibly, and the measurements of the paper on barrels and
         // racks give a restitution of 0.84 to 0.91 for a full barrel on one to four contact elements.
         Self { stiffness, restitution: 0.8, mass, stick }
     }

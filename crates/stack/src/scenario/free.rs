@@ -54,7 +54,7 @@ section! {
 pub struct FreeBody {
     /// Unique name.
     pub name: String,
-    /// Kind by which interfaces refer to the body.
+    /// Name of the kind of the body, by which interfaces refer to it.
     pub kind: String,
     /// Outline of the body.
     pub shape: Shape,
@@ -76,20 +76,21 @@ pub struct FreeBody {
     pub nodes: Nodes,
     /// Additional boundaries.
     pub boundaries: Vec<Boundary>,
-    /// Name of the group; interfaces can exclude contacts within a group.
+    /// Name of the group; interfaces can exclude contacts within a group. `None` if the body belongs to no group.
     pub group: Option<String>,
     /// `true` if the body moves with the ground.
     pub fixed_to_ground: bool,
-    /// Viscous drag on the body.
+    /// Viscous drag on the body; `None` if there is no drag.
     pub viscous: Option<Viscous>,
 }
 
 /// An additional massless boundary of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boundary {
-    /// Kind by which interfaces refer to the boundary.
+    /// Name of the kind of the boundary, by which interfaces refer to it.
     pub kind: String,
-    /// Outline that other bodies touch, relative to the reference point of the body's shape; `None` for nodes only.
+    /// Outline that other bodies touch, relative to the reference point of the body's shape; `None` if the boundary
+    /// has only nodes.
     pub shape: Option<Shape>,
     /// Contact nodes on the boundary.
     pub nodes: Nodes,
@@ -120,8 +121,8 @@ pub struct FreeScene {
 }
 
 impl FreeBody {
-    /// Returns kind, shape (if the boundary has one) and nodes of each boundary of the body: first its own outline, then the
-    /// additional boundaries.
+    /// Returns the kind, the shape (if there is one) and the nodes of each boundary of the body: first its own outline,
+    /// then the additional boundaries.
     pub fn outer(&self) -> impl Iterator<Item = (&str, Option<&Shape>, &Nodes)> {
         let own = (self.kind.as_str(), Some(&self.shape), &self.nodes);
         let further = self.boundaries.iter().map(|b| (b.kind.as_str(), b.shape.as_ref(), &b.nodes));
@@ -132,7 +133,7 @@ impl FreeBody {
 /// Maximum number of bodies of a free scene.
 const MOST_BODIES: usize = 5000;
 
-/// Maximum number of contact nodes of all bodies of a free scene.
+/// Maximum total number of contact nodes in a free scene.
 const MOST_NODES: f64 = 2e6;
 
 table! {
@@ -190,8 +191,8 @@ table! {
     viscous = Kind::Table(&VISCOUS), Default::Nothing;
 }
 
-/// Returns the error message for a body whose columns would have the same names as those of another body or of the
-/// ground.
+/// Returns the error message for a body whose columns in tables of results would have the same names as those of
+/// another body or of the ground.
 pub(super) fn clash(name: &str, column: &str) -> String {
     format!(
         "the columns of \"{name}\" would be called {column}_…, like those of another body or of the ground; give the \

@@ -33,7 +33,7 @@ pub(crate) enum Access {
 /// A kind of file: its fields, and the files of this kind that come with the program.
 #[derive(Clone, Copy, Debug)]
 pub struct Language {
-    /// The fields.
+    /// Definition of the fields at the top level of the file.
     pub root: &'static Section,
     /// Returns the text of a built-in file.
     pub builtin: fn(&str) -> Option<&'static str>,
@@ -270,7 +270,8 @@ fn read(
     finished(sources, table, Vec::new())
 }
 
-/// Reads a file, overlays it on the files that it extends, and applies the overrides.
+/// Parses the bytes of a file, overlays its table on the tables of the files that it extends, and applies the
+/// overrides.
 pub(super) fn merged(
     name: &str,
     bytes: &[u8],
@@ -287,7 +288,9 @@ pub(super) fn merged(
     Ok((sources, table))
 }
 
-/// Builds the scenario from a table to which all overrides have been applied, and adds its warnings to `warnings`.
+/// Builds the scenario from a table to which all overrides have been applied.
+///
+/// The warnings of the scenario are the given `warnings`, followed by those about former keys in the table.
 pub(super) fn finished(
     sources: Sources,
     mut table: Table,

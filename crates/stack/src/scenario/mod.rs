@@ -273,7 +273,7 @@ impl Scenario {
     ///
     /// Two scenarios with the same fingerprint describe the same run, however they were written. If the bytes of a
     /// record are in memory ([`Scenario::with_records`]), the hash covers the bytes; otherwise, it covers the path as
-    /// written. In every run, the bytes are in memory.
+    /// written. During a run, the bytes are always in memory.
     pub fn fingerprint(&self) -> u64 {
         let motion = self.motion.by_content();
         let untitled = Self { title: "-".to_owned(), motion, ..self.clone() };
@@ -296,7 +296,7 @@ impl Scenario {
         settings
     }
 
-    /// Returns the node that was written at the path of a setting.
+    /// Returns the node that was written at the path of a setting; `None` if no node was written there.
     fn node(&self, path: &str) -> Option<&tree::Node> {
         let (_, table) = self.written.0.as_deref()?;
         let keys: Vec<&str> = path.split('.').collect();

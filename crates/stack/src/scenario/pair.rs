@@ -11,18 +11,19 @@ use super::writer::Writer;
 /// Impact stiffness (N/m^1.5) of pairs that include a barrel, and of seats at the end of their stroke.
 ///
 /// With this stiffness, a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) is stopped within
-/// 15 mm. The value is an assumption, since no measurement is known. In earthquakes, barrels in cellars bounced
-/// clearly, burst and lost their bungs.
+/// 15 mm. The value is an assumption, since no measurement is known. In earthquakes, barrels in cellars visibly
+/// bounced, burst and lost their bungs.
 const HEAVY: f64 = 1.2e9;
 
-/// Impact stiffness (N/m^1.5) between racks and from a rack to the ground.
+/// Impact stiffness (N/m^1.5) between two racks, and between a fallen rack and the ground.
 ///
 /// With this stiffness, an empty rack that falls from the top of six levels is stopped within 10 mm. If a barrel lands
 /// on a rack, several contacts of the rack share the load.
 const LIGHT: f64 = 5e8;
 
-/// Declares the pairs: variant, field and name in files, then table, impact stiffness, default friction coefficient,
-/// and the source of that coefficient.
+/// Declares the pairs. Each entry states the enum variant, the struct field and the name in scenario files. The
+/// definition of the table of the contact law, the impact stiffness, the default friction coefficient and the source
+/// of that coefficient follow after `=`.
 macro_rules! pairs {
     ($(
         $(#[doc = $help:literal])+
@@ -38,17 +39,17 @@ macro_rules! pairs {
             /// All pairs, in the order of their discriminants.
             pub const ALL: &[Self] = &[$(Self::$pair),*];
 
-            /// Returns the name in files.
+            /// Returns the name of the pair in scenario files.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$pair => $name),* }
             }
 
-            /// Returns the default friction coefficient.
+            /// Returns the default friction coefficient of the pair.
             pub fn coefficient(self) -> f64 {
                 match self { $(Self::$pair => $coefficient),* }
             }
 
-            /// Returns the source of the default friction coefficient.
+            /// Returns the source of the default friction coefficient of the pair.
             pub fn source(self) -> &'static str {
                 match self { $(Self::$pair => $source),* }
             }

@@ -25,7 +25,7 @@ const MOVED: [&str; 6] = [
 /// Former key that selected which kinds of differences are drawn.
 const KIND: &str = "kind";
 
-/// Values of [`KIND`], each with the equivalent values of `imperfections.drawn` and `unknowns.drawn`.
+/// Values of the key [`KIND`], each with the equivalent values of `imperfections.drawn` and `unknowns.drawn`.
 const KINDS: [(&str, [bool; 2]); 3] =
     [("hair", [true, false]), ("ignorance", [false, true]), ("both", [true, true])];
 
@@ -71,7 +71,11 @@ pub(super) fn renew(table: &mut Table, sources: &Sources) -> Result<Vec<String>,
     Ok(warnings)
 }
 
-/// Returns the values of `imperfections.drawn` and `unknowns.drawn` that are equivalent to an entry of [`KIND`].
+/// Returns the values of `imperfections.drawn` and `unknowns.drawn` that are equivalent to the value of an entry with
+/// the key [`KIND`].
+///
+/// # Errors
+/// If the value is none of those in [`KINDS`].
 fn kinds(entry: &Entry, sources: &Sources) -> Result<[bool; 2], ScenarioError> {
     let known = KINDS.iter().find(|(name, _)| entry.node.value == Value::Text((*name).to_owned()));
     known.map(|(_, drawn)| *drawn).ok_or_else(|| {
@@ -84,7 +88,10 @@ fn kinds(entry: &Entry, sources: &Sources) -> Result<[bool; 2], ScenarioError> {
     })
 }
 
-/// Adds an entry to a table of the scenario, unless an upper layer states the same key.
+/// Adds an entry to a table of the scenario, unless a layer above that of the entry states the same key.
+///
+/// # Errors
+/// If the layer of the entry itself states the same key.
 fn put(
     table: &mut Table,
     section: &str,

@@ -59,7 +59,7 @@ named! {
 }
 
 impl Accuracy {
-    /// Returns the time step divided by the time step of the standard accuracy.
+    /// Returns the ratio of the time step to the time step with [`Accuracy::Standard`].
     pub fn step(self) -> f64 {
         match self {
             Self::Screening => 1.25,

@@ -68,7 +68,8 @@ impl StackSpec {
         }
     }
 
-    /// Returns the overrides of a kind of body at a level and column, in the order of the file.
+    /// Returns the overrides that apply to bodies of a kind at the given level and column, in the order of the file.
+    /// These include overrides of all columns of the level.
     pub fn changes_of(
         &self,
         body: StackBody,

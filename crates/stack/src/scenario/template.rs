@@ -199,8 +199,9 @@ impl Host {
         self.sources.error(written.unwrap_or(Origin::Whole(0)), Problem::Inconsistent { message })
     }
 
-    /// Returns the scenario of the stack, in three dimensions and without the file's `own` fields, with the given
-    /// values set at the given paths.
+    /// Returns the stack of the file as a three-dimensional scenario, with the given values set at the given paths.
+    ///
+    /// `own` are the keys at the top level of the file that do not belong to the scenario; they are left out.
     ///
     /// # Errors
     /// Returns the first problem found, with the place where the value was written.
@@ -254,7 +255,7 @@ impl Template {
         merge::field_at(Some(&self.table), &root::ROOT, &keys)
     }
 
-    /// Returns the valid path that is most similar to a misspelled one.
+    /// Returns the valid path that is most similar to a misspelled one; `None` if no valid path is similar enough.
     pub fn nearest(&self, path: &str) -> Option<String> {
         let mut keys: Vec<String> = path.split('.').map(|key| key.trim().to_owned()).collect();
         for at in 0..keys.len() {

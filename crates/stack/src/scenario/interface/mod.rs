@@ -27,8 +27,8 @@ named! {
 /// In either case, the restitution of an impact depends on the mass or the speed of the body that strikes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
-    /// Damping coefficient: `c` of a linear law (N·s/m per node or seat, N·s/m² per length of boundary), or `d` (s/m)
-    /// of a Hunt-Crossley law.
+    /// Damping coefficient: for a linear law, `c`, in N·s/m for one node or seat, or in N·s/m per meter of boundary
+    /// (N·s/m²); for a Hunt-Crossley law, `d` (s/m).
     Coefficient(f64),
     /// Coefficient of restitution at a reference mass or speed, from which the damping coefficient follows.
     Restitution {
@@ -45,21 +45,21 @@ pub enum Damping {
 pub enum NormalLaw {
     /// `k δ + c δ̇` on approach, `k δ` on rebound (Candia, de la Llera and Almazán 2008, eq. 2.6).
     SpeedGap {
-        /// `k` (N/m per node or seat, or N/m² per length of boundary).
+        /// `k`: N/m for one node or seat, or N/m per meter of boundary (N/m²).
         stiffness: f64,
         /// Dissipation.
         damping: Damping,
     },
     /// `max(0, k δ + c δ̇)`.
     KelvinVoigt {
-        /// `k` (N/m per node or seat, or N/m² per length of boundary).
+        /// `k`: N/m for one node or seat, or N/m per meter of boundary (N/m²).
         stiffness: f64,
         /// Dissipation.
         damping: Damping,
     },
     /// `k δⁿ (1 + d δ̇)`.
     HuntCrossley {
-        /// `k` (N/mⁿ per node or seat, or N/mⁿ⁺¹ per length of boundary).
+        /// `k`: N/mⁿ for one node or seat, or N/mⁿ per meter of boundary (N/mⁿ⁺¹).
         stiffness: f64,
         /// `n`, either 1 or 1.5.
         exponent: f64,
@@ -68,7 +68,7 @@ pub enum NormalLaw {
     },
     /// `k δ^1.5` on approach and `e² k δ^1.5` on separation, with a gradual transition over speeds of about `v`.
     Rebound {
-        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 per length of boundary).
+        /// `k`: N/m^1.5 for one node or seat, or N/m^1.5 per meter of boundary (N/m^2.5).
         stiffness: f64,
         /// Coefficient of restitution `e`: normal speed after an impact divided by normal speed before it, in `(0, 1]`.
         restitution: f64,
@@ -77,7 +77,7 @@ pub enum NormalLaw {
     },
     /// `k δ^1.5`, without dissipation.
     Hertz {
-        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 per length of boundary).
+        /// `k`: N/m^1.5 for one node or seat, or N/m^1.5 per meter of boundary (N/m^2.5).
         stiffness: f64,
     },
 }
@@ -102,7 +102,7 @@ pub enum Friction {
     Regularized {
         /// Kinetic coefficient.
         coefficient: f64,
-        /// Slip rate at which the friction is fully developed (m/s).
+        /// Slip rate (m/s) at which the friction reaches 71 % of its limit.
         velocity: f64,
     },
 }
@@ -149,8 +149,10 @@ impl Interface {
         }
     }
 
-    /// Multiplies the damping of a linear law by a factor. If a restitution is stated instead of the damping, it is
-    /// changed so that the damping ratio is multiplied by the factor.
+    /// Multiplies the damping of a linear law by a factor. Other laws are left unchanged.
+    ///
+    /// If the damping is stated by a restitution, the restitution is changed so that the damping ratio is multiplied by
+    /// the factor.
     pub fn damp(&mut self, factor: f64) {
         let (damping, to_ratio, from_ratio): (_, DampingRatio, Restitution) = match &mut self.normal
         {

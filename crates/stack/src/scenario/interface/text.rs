@@ -17,7 +17,7 @@ use super::{Basis, Damping, Friction, Interface, NormalLaw};
 /// (2008).
 const NODE: (f64, f64) = (980_000.0, 2200.0);
 
-/// Default contact constants of a pair of a stack, used for the constants that the scenario leaves out.
+/// Contact constants of one pair of bodies in a stack, used as defaults for constants that the scenario leaves out.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scenario) struct PairDefaults {
     /// Constants of the seat, if the pair is a seat of a rack.
