@@ -9,7 +9,7 @@ use barrelstack_fragility::Lognormal;
 /// with a median of 5 m and a dispersion of 0.6 agrees with that share. At 0.9 m per level, 0.2 % of the
 /// barrels that fall from the second level burst, 4 % from the third, 15 % from the fourth, 29 % from the
 /// fifth and 43 % from the sixth. If a stack of four to six levels falls completely, 7 % to 18 % of the
-/// barrels above the lowest level burst. Results are also given for medians of 3.5 m and 7 m.
+/// barrels above the lowest level burst. [`Breakage::RANGE`] also has medians of 3.5 m and 7 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Breakage {
     /// Fall height (m) at which half of the barrels burst.

@@ -42,7 +42,7 @@ pub struct Side {
     pub end_time: f64,
     /// Duration (s) of the ground motion that remained when `run.duration` ended the run; `None` if nothing remained.
     pub cut: Option<f64>,
-    /// Time (s) of the first loss of a seat.
+    /// Time (s) of the first loss of a seat; `None` if no seat is lost.
     pub collapse_time: Option<f64>,
     /// Animated scene of the run, as a pane of the player.
     pub pane: Pane,
@@ -110,11 +110,13 @@ pub trait Comparable: Sized {
     fn side(self, name: String, plane: Option<View>) -> Side;
 }
 
-/// Makes all answers show the same variant under the same component of the motion.
+/// Makes all answers show the same variant: the most typical one over all answers (the medoid).
 ///
-/// The variant is the most typical one over all answers (the medoid). In every answer that shows another variant, the
-/// medoid is run and then shown; the observer receives the progress and may cancel. Answers are returned unchanged if
-/// any of them has no variants.
+/// Only variants that run under the same horizontal component of the motion in all answers are eligible. If the nominal
+/// cases already differ in this component, all variants are eligible.
+///
+/// In every answer that shows another variant, the medoid is run and then shown; the observer receives the progress and
+/// may cancel. Answers are returned unchanged if any of them has no variants.
 ///
 /// # Errors
 /// When the common variant cannot be run.
@@ -265,7 +267,7 @@ pub struct OtherPlane {
 /// Reason why runs cannot be compared.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum CompareError {
-    /// Fewer than two runs.
+    /// Fewer than two runs; the value is their number.
     #[error("a comparison needs at least two runs, found {0}")]
     TooFew(usize),
     /// More runs than a page can show.

@@ -33,8 +33,8 @@ const FILES_OF_PLANE: [&str; 5] =
 /// Maximum size (bytes) of a summary that is read.
 const SUMMARY_LIMIT: usize = 256 << 20;
 
-/// Maximum time between the modification of the summary of a run and that of its other files. A file that was modified
-/// later was changed by another program.
+/// Maximum delay between the last modification of the summary of a run and that of any other file of this run. A file
+/// that was modified later counts as changed after the run.
 const AT_ONCE: Duration = Duration::from_secs(10);
 
 /// Error while writing output files.
@@ -247,9 +247,9 @@ impl Folder {
         written.map_err(|(path, error)| ExportError::refused(&path, &error))
     }
 
-    /// Rewrites `report.html` with an embedded page, in which a reader can change the scenario and run it.
+    /// Rewrites `report.html`, and embeds a page in it with which a reader can change the scenario and run it.
     ///
-    /// `page` is the HTML of the embedded page, which contains the program. The page opens with `scenario`.
+    /// `page` is the HTML of the embedded page, which contains the simulation program. The page opens with `scenario`.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -356,7 +356,7 @@ fn histories_npz(run: &Run) -> std::io::Result<Vec<u8>> {
     barrelstack_motion::write::archive(&arrays)
 }
 
-/// Returns the column names of the two forces of a contact such as "R1 on ground".
+/// Returns the column names of the vertical and the horizontal force of a contact such as "R1 on ground".
 fn force_names(contact: &str) -> [String; 2] {
     ["vertical", "horizontal"].map(|axis| format!("{}_{axis}_force", column_name(contact)))
 }

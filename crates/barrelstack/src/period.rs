@@ -116,7 +116,7 @@ pub fn swings(times: &[f64], values: &[f64]) -> Vec<Swing> {
 /// Drift of the top of a stack relative to its foot, while the stack stood.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drift {
-    /// Height (m) of the tracked point at rest: the center of the top left barrel.
+    /// Height (m), in the stack as assembled, of the point whose drift is measured: the center of the top left barrel.
     pub height: f64,
     /// Largest absolute drift (m).
     pub largest: f64,

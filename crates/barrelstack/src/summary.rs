@@ -379,7 +379,8 @@ impl AnySummary {
         either!(self, summary => summary.variant)
     }
 
-    /// Returns the changes that would have kept the stack up.
+    /// Returns the changes that would have kept the stack up; `None` if the stack stands, or if no change was searched
+    /// for.
     pub fn remedy(&self) -> Option<&Remedy> {
         either!(self, summary => summary.remedy.as_ref())
     }

@@ -110,7 +110,8 @@ fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     said.join(" ")
 }
 
-/// Describes an input and its value, such as "rack-ground friction 0.1".
+/// Describes an input by its name and its value in the run with index `at`, such as "rack-ground friction 0.1"; if the
+/// run has no such input, puts "no" before the name.
 fn other(one: &Difference, at: usize) -> String {
     // These parts occur in the paths of all inputs of a kind, so they carry no information.
     let empty = ["interface", "coefficient", "stack", "run"];

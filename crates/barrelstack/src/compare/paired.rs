@@ -81,12 +81,13 @@ impl Paired {
         self.both + self.only_first + self.only_second + self.neither
     }
 
-    /// Returns the numbers of paired variants that collapse in the first run and in the second.
+    /// Returns the number of paired variants that collapse in the first run, and that of those that collapse in the
+    /// second run.
     pub fn collapsed(&self) -> [u32; 2] {
         [self.both + self.only_first, self.both + self.only_second]
     }
 
-    /// `true` if the 95 % interval of the reduction excludes zero.
+    /// `true` if the 95 % interval of the difference between the two shares of collapses excludes zero.
     pub fn is_clear(&self) -> bool {
         self.interval[0] > 0.0 || self.interval[1] < 0.0
     }

@@ -73,7 +73,7 @@ pub struct Rendering {
     pub rate: f64,
     /// Time interval (s) to render; `None` for the whole run.
     pub between: Option<[f64; 2]>,
-    /// Longer side (pixels) of animations.
+    /// Length (pixels) of the longer side of animations.
     pub largest: u32,
     /// Language of the figures and of the report.
     pub language: Language,

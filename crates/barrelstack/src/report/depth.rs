@@ -49,8 +49,8 @@ struct Section<'a> {
 }
 
 impl Section<'_> {
-    /// Returns the three-dimensional body of a planar part. A planar barrel stands for several barrels, so the body is
-    /// drawn at several positions.
+    /// Returns the three-dimensional body of a planar part. A planar barrel stands for several barrels, so its body is
+    /// drawn once at the position of each of them.
     fn body(&self, assembly: &Assembly, index: usize, part: &Part) -> DepthBody {
         let (role, volumes, rows) = match part.kind {
             PartKind::Barrel => (Role::Barrel, vec![self.barrel()], self.rows()),
@@ -174,7 +174,8 @@ impl Section<'_> {
         }
     }
 
-    /// Converts planar outlines to bars. Each line segment gives one bar at each of the offsets `away` from the plane.
+    /// Converts planar outlines to bars. Each line segment of an outline gives one bar for each offset from the plane
+    /// that `Section::away` returns.
     fn plates(&self, outlines: Option<&[Outline]>) -> Vec<Volume> {
         let mut bars = Vec::new();
         for outline in outlines.unwrap_or(&[]) {

@@ -71,7 +71,8 @@ pub(super) fn still(assembly: &Assembly) -> Scene {
 /// Maximum number of variants whose paths are drawn; more paths would merge into a black area.
 const DRAWN: usize = 128;
 
-/// Returns, for all variants, the paths of the top barrels and the final poses of the barrels.
+/// Returns the paths of the top barrels and the final poses of the barrels, for at most `DRAWN` variants; `None` if
+/// there are no paths.
 fn ghosts(variants: &Variants) -> Option<Ghosts> {
     let trails = || variants.results.iter().skip(1).take(DRAWN).map(|result| &result.trail);
     let wide = |place: &[f32; 2]| place.map(f64::from);
@@ -293,17 +294,18 @@ pub(crate) fn ground_acceleration(label: &str, component: &motion::History, end:
     ground_history(label, "g", (component.natural_step(), end), &value)
 }
 
-/// Reduces a quantity of the ground motion to the samples that a picture shows, until `end` (s).
+/// Samples a quantity of the ground motion, from time 0 to `end` (s), for a plot.
 ///
-/// The given samples are `step` (s) apart. In every fiftieth of a second, the sample with the
-/// largest magnitude is kept at its own time, so that the picture shows the true peaks.
+/// The quantity is evaluated at intervals of `step` (s), but not more often than every 0.1 ms. Of the samples within
+/// each interval of 1/50 s, only the one with the largest magnitude is kept, at its own time, so that the plot shows
+/// the true peaks.
 pub fn ground_history(
     label: &str,
     unit: &str,
     (step, end): (f64, f64),
     value: &dyn Fn(f64) -> f64,
 ) -> History {
-    /// Number of samples per second that the picture shows.
+    /// Maximum number of samples per second that are kept.
     const RATE: f64 = 50.0;
     let (mut times, mut values): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let step = step.max(1e-4);

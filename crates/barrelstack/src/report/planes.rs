@@ -79,7 +79,7 @@ fn of(assembly: &Assembly, scene: Arc<Scene>) -> Pane {
     Pane { mark: mark.to_owned(), name, verdict, tone, scene, traces }
 }
 
-/// Returns the ground acceleration in a plane.
+/// Returns the ground acceleration of a run, labeled with its plane; `None` if there is no motion or no plane.
 fn ground(run: &Run) -> Option<History> {
     let first = drawing::ground_histories(run).into_iter().next()?;
     let view = run.assembly.view?;

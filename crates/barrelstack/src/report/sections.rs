@@ -243,10 +243,10 @@ fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
     vec![history(run, "displacements", &caption, axis, series)]
 }
 
-/// Returns the 5 % and 95 % fractiles, over the variants, of the displacement (cm) of the first
-/// barrel of the top level.
+/// Returns histories of the 5 % and 95 % fractiles, over the variants, of the horizontal displacement (cm) of the
+/// first barrel of the top level; empty if fewer than two variants have a recorded path of this barrel.
 ///
-/// A variant that has ended keeps its last displacement.
+/// After the end of a variant, its last displacement is used.
 fn band(run: &Run, variants: &Variants) -> Vec<Series> {
     let trails = variants.results.iter().skip(1).map(|result| &result.trail);
     let paths: Vec<&[[f32; 2]]> =
@@ -407,7 +407,7 @@ fn motion(run: &Run) -> Vec<Block> {
     blocks
 }
 
-/// Describes how well the energy balance of a run holds.
+/// States the residual of the energy balance of a run, and the energy supplied.
 pub fn balanced(balance: &EnergyBalance) -> String {
     format!(
         "The energy supplied by the ground and by gravity equals the energy stored and dissipated, except for a residual of {} \

@@ -1,4 +1,4 @@
-//! Date and commit that pages state.
+//! Date and commit that are printed on report pages.
 
 use barrelstack_input::system;
 use barrelstack_motion::Utc;

@@ -23,7 +23,8 @@ pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     variants::words::headline(&spreads)
 }
 
-/// Describes the result of the shown run of one of two planes in one sentence, without naming the plane.
+/// Describes the result of the shown run in one sentence, without naming the plane of the run; for a stack with results
+/// in two planes.
 pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
     single(run, summary, None, "barrels in this plane")
 }
@@ -199,8 +200,8 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// Returns the command that compares the remedy with the stack; absolute paths are shortened to
-/// file names.
+/// Returns the command that compares the stack as it is with the changes that suffice; empty if there is no such
+/// command. Absolute paths in the command are shortened to file names.
 pub fn command(remedy: Option<&Remedy>) -> String {
     let command = remedy.and_then(|found| found.comparison.as_deref());
     let word = |word: &str| {
@@ -293,7 +294,8 @@ pub(super) fn details(
     sentences
 }
 
-/// Returns the fingerprint of each file of a motion, as pairs for the provenance.
+/// Returns one entry of the provenance for each file of a motion: the name "record fingerprint", and a value that
+/// consists of the fingerprint and the file name.
 pub fn record_fingerprints(motion: &MotionSpec) -> impl Iterator<Item = (String, String)> {
     let pair = |(file, print)| ("record fingerprint".to_owned(), format!("{print} ({file})"));
     motion.fingerprints().into_iter().map(pair)

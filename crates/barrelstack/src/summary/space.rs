@@ -175,12 +175,14 @@ described! {
 }
 
 impl Directions {
-    /// Returns the numbers of variants whose first loss of seat is across the barrels and along the barrels.
+    /// Returns the number of variants whose first loss of seat is across the barrels, and the number of variants in
+    /// which it is along the barrels.
     pub fn first(&self) -> [u32; 2] {
         [self.first_right + self.first_left, self.first_away + self.first_near]
     }
 
-    /// Returns the numbers of fallen barrels that are displaced mainly across and mainly along the barrels.
+    /// Returns the number of fallen barrels, in all variants, whose displacement from rest is mainly across the
+    /// barrels, and the number of those whose displacement is mainly along the barrels.
     pub fn debris(&self) -> [u32; 2] {
         [self.debris_right + self.debris_left, self.debris_away + self.debris_near]
     }

@@ -1,4 +1,4 @@
-//! The remedy as a sentence and as a table.
+//! Describes the [`Remedy`] of a stack, the changes that would keep it standing, in sentences, a table and a plot.
 
 use barrelstack_report::{
     Axis, Block, Cell, Figure, Mark, Plot, Series, SeriesStyle, Table, capital, listed,

@@ -21,9 +21,10 @@ use crate::summary::{Summary, Unfinished};
 pub enum Advance {
     /// Progress of the variants.
     Variants {
-        /// Number of finished variants.
+        /// Number of finished cases: variants and, if it is run, the nominal case. A stack in two planes has one case
+        /// per plane for each of them.
         done: usize,
-        /// Total number of variants.
+        /// Total number of cases, counted in the same manner.
         of: usize,
     },
     /// Verdict of the variants with the lowest numbers, reported before the others are run.
@@ -101,7 +102,8 @@ impl Answer {
 /// Returns the number of the variant that is the most typical one over all answers and planes (the medoid); `None` if
 /// an answer has no variants.
 ///
-/// Only variants that have the same component of the motion in all answers are eligible.
+/// Only variants that run under the same horizontal component of the motion in all answers are eligible. If the nominal
+/// cases already differ in this component, all variants are eligible.
 pub(crate) fn common_number<A: Comparable>(answers: &[&A]) -> Result<Option<u32>, GroundError> {
     let all: Option<Vec<Vec<CaseResult>>> =
         answers.iter().flat_map(|answer| answer.results()).collect();
@@ -244,8 +246,8 @@ const FIRST: u32 = 8;
 /// Runs the variants of the first verdict, reports that verdict, and then runs all other variants.
 ///
 /// The first verdict uses the variants with the lowest numbers. The variants that finish first
-/// would be a biased sample, because runs that collapse end early. Variants that are not finished
-/// when canceled have the outcome `Interrupted`.
+/// would be a biased sample, because runs that collapse end early. If the computation is canceled,
+/// the unfinished variants have the outcome `Interrupted`.
 fn in_order(
     planes: &[Plane],
     numbers: &[u32],

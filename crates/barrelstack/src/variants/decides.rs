@@ -146,7 +146,7 @@ impl Drawn {
         Constant { name, field, unit, dispersion, value: Box::new(|deviate| self.at(deviate)) }
     }
 
-    /// Returns the value of the constant at a standard normal deviate.
+    /// Returns the value of the constant at a standard normal deviate; `None` if the contact law has no such constant.
     fn at(&self, deviate: f64) -> Option<f64> {
         let mut law = self.law;
         (self.change)(&mut law, (self.factor)(self.dispersion, deviate));
@@ -398,7 +398,7 @@ pub(super) fn draws(planes: &[Plane], verdicts: &[Vec<Option<bool>>]) -> Option<
 }
 
 /// Fits the regression of the share of collapses to the verdicts of the variants, in the order of their numbers, and
-/// returns it with its predictors, the uncertain constants.
+/// returns it with its predictors, the uncertain constants. Returns `None` in the same cases as [`range`].
 fn fit(plane: &Plane, verdicts: &[Option<bool>]) -> Option<(Conditional, Vec<Drawn>)> {
     let imperfections = plane.scenario.imperfections()?;
     let unknowns = plane.scenario.unknowns()?;

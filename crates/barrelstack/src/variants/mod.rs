@@ -228,8 +228,8 @@ pub fn run_some(
     Ok(whole.then_some(results))
 }
 
-/// Runs variants like [`run_some`], but keeps finished results when canceled; all others have the
-/// outcome `Interrupted`.
+/// Runs variants like [`run_some`], but returns results even if the computation is canceled; the unfinished variants
+/// then have the outcome `Interrupted`.
 ///
 /// # Errors
 /// As [`run`].
