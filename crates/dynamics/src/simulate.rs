@@ -86,7 +86,7 @@ pub enum Finish {
 /// Numerical failure of a run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
-    /// A number of the state is no longer finite.
+    /// A number in the state is no longer finite.
     #[error(
         "the step failed at t = {time:.6} s: the motion of body \"{body}\" is no longer finite; try a \
          step below {time_step:.2e} s"
@@ -364,7 +364,7 @@ impl<S: Space<Real = f64>> Stepper<S> {
     }
 }
 
-/// Times of the steps of a run, in integer multiples of the shortest substep.
+/// Times of the steps of a run, as integer multiples of the shortest substep.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepTimes<R: Real> {
     /// Time since the start, as a multiple of the shortest substep.
@@ -375,8 +375,9 @@ pub(crate) struct StepTimes<R: Real> {
     /// Length (s) of the shortest substep.
     shortest: R,
     time_step: R,
-    /// Lanes in which the current impact is hard. The step length changes only before and after an impact, since a
-    /// change during an impact would cause an energy error.
+    /// Lanes in which the current impact is hard, as defined by [`Fast::hard`](crate::model::Fast::hard). They take the
+    /// shortest substep until no substeps are needed anymore. The step length changes only before and after an impact,
+    /// since a change during an impact would cause an energy error.
     hard: R::Mask,
 }
 

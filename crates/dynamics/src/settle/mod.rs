@@ -1,7 +1,7 @@
 //! Static equilibrium under gravity, computed before the ground moves.
 //!
 //! Equilibrium depends only on the positions of the bodies and on the displacements of the tangential springs. So it is
-//! solved in a fictitious time, with masses chosen for fast convergence and with vanishing velocities, at which no
+//! computed in a fictitious time, with masses chosen for fast convergence and with vanishing velocities, at which no
 //! damper acts.
 
 mod lanes;
@@ -40,7 +40,8 @@ pub struct Locked {
     pub holding: usize,
     /// Number of contacts at the friction limit.
     pub slipping: usize,
-    /// Sum of the friction forces of all contacts, divided by the sum of their normal forces.
+    /// Sum of the magnitudes of the friction forces of all contacts, divided by the sum of their normal forces; zero if
+    /// there are no normal forces.
     pub friction: f64,
 }
 

@@ -17,8 +17,8 @@ const GOING: f64 = 0.1;
 /// Displacement of a body, as a fraction of its reach, beyond which it counts as out of place.
 const LEFT: f64 = 0.5;
 
-/// Displacement of a body, as a fraction of the largest displacement of any body, from which it is also classed as
-/// moving.
+/// Displacement of a body, as a fraction of the largest displacement of any body, at or above which the body also
+/// counts as moving.
 const WITH_IT: f64 = 0.25;
 
 /// Ratio of penetration to displacement above which a body is classed as sinking.
@@ -87,10 +87,10 @@ pub enum Lack {
     /// The body leaves its support.
     #[error("it is pushed out of place")]
     Place,
-    /// The forces do not balance, but the body stays in place.
+    /// The maximum number of steps was reached before the forces balanced, but the body stays in place.
     #[error("after {steps} steps, its residual acceleration is still {unbalanced:.0e} of gravity")]
     Time {
-        /// Number of steps.
+        /// Number of steps taken.
         steps: u64,
         /// The residual acceleration, as a fraction of gravity.
         unbalanced: f64,
@@ -114,9 +114,9 @@ impl<S: Space> Departure<S> {
         Self { start, upward, first: None }
     }
 
-    /// Returns the displacement (m) of every body from its initial position: the largest of its displacement sideways,
-    /// its rise, and the amount by which it sinks more than the bodies below. So a body that sinks on soft contacts
-    /// together with the bodies below is not counted as displaced.
+    /// Returns, for each body, the displacement (m) from its initial position: the largest of its sideways
+    /// displacement, its rise, and the amount by which it sinks more than the bodies below. So a body that sinks on
+    /// soft contacts together with the bodies below is not counted as displaced.
     fn strayed(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<f64> {
         let down = model.gravity * (S::Real::splat(1.0) / gravity(model));
         let mut strayed = vec![0.0; self.start.len()];

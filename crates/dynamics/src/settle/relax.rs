@@ -46,8 +46,8 @@ struct Held<R> {
 }
 
 impl<R: Real> Held<R> {
-    /// Adds a spring, given by its stiffness (N/m) and by the vector (m) from the center of mass to the point at which
-    /// it acts.
+    /// Adds the contribution of a spring, given by its stiffness (N/m); `arm` is the vector (m) from the center of mass
+    /// to the point at which the spring acts.
     #[inline(always)]
     fn by(&mut self, stiffness: R, arm: impl Linear<R>) {
         self.translation += stiffness;
@@ -68,12 +68,12 @@ pub(super) struct Relaxation<S: Space> {
     pub(super) resting: <S::Real as Real>::Mask,
     /// `true` for every body that has had a contact or a loaded force element.
     pub(super) met: Vec<bool>,
-    /// Largest distance (m) of the boundary of every body from its center of mass.
+    /// For each body, the largest distance (m) of its boundary from its center of mass.
     pub(super) reach: Vec<S::Real>,
     /// Displacements and rotations of the bodies in the last step.
     displacements: Vec<Twist<S>>,
-    /// Largest stiffness so far of the supports of every body. The largest value is kept because a body that briefly
-    /// loses its contacts must not become light while other bodies lie on it.
+    /// For each body, the largest stiffness of its supports so far. The largest value is kept because a body that
+    /// briefly loses its contacts must not become light while other bodies lie on it.
     held: Vec<Held<S::Real>>,
     touches: Vec<Touch<S>>,
     /// For each contact element, the lanes in which it touched when the list of contacts was last updated.
@@ -152,8 +152,8 @@ impl<S: Space> Relaxation<S> {
         )
     }
 
-    /// Replaces the list of contacts by those of the last force evaluation, and updates the stiffness of the supports
-    /// of each body.
+    /// Replaces the list of contacts by the contacts of the last force evaluation, and updates the stiffness of the
+    /// supports of each body.
     pub(super) fn weigh(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]

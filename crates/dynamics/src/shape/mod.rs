@@ -47,7 +47,7 @@ pub struct Nearest<S: Space> {
     pub to_end: S::Real,
     /// Unit vector along the straight piece toward its nearer end.
     pub toward_end: S::Vector,
-    /// Distance (m) to the core, which is the shape without its rounding.
+    /// Signed distance (m) of the point from the core, which is the shape without its rounding.
     pub core: S::Real,
 }
 
@@ -64,13 +64,14 @@ impl<S: Space> Nearest<S> {
 /// another body's surface the point can bear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facing<S: Space> {
-    /// Unit vectors with the meaning of [`Round::limits`], in the frame of the other body's surface.
+    /// Unit vectors that limit the range, defined like [`Round::limits`], but in the frame of the other body's surface.
     pub limits: [S::Vector; 2],
-    /// Tolerance of the range: the point can bear on a piece of the other surface with outward normal `n` only if
-    /// `−n · limit` is at most this value for both limits.
+    /// Maximum permitted value of `−n · limit` for each of the two limits, where `n` is the outward normal of a piece
+    /// of the other surface. If either value is greater, the point cannot bear on this piece.
     pub most: f64,
-    /// Tolerance (m) at the sides of the other surface that the range excludes. If the point lies this distance or more
-    /// outside of such a side, it cannot bear on any piece.
+    /// Tolerance (m) for a point outside of a side of the other surface that the range excludes. A point that lies this
+    /// distance or more outside of such a side does not count as inside the core, so [`Surface::bearing`] returns the
+    /// nearest piece.
     pub slack: f64,
 }
 
@@ -115,7 +116,7 @@ impl<R: Real> Nearest<Planar<R>> {
 
 /// A target surface; all points are in its own frame.
 pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + 'static {
-    /// Returns signed distance and outward normal at a point (m).
+    /// Returns the signed distance (m) of a point (m) from the surface, and the outward normal at the companion point.
     fn gap(&self, point: S::Vector) -> Gap<S>;
 
     /// Returns the number of straight sides of a polygon; zero for all other shapes.
@@ -427,7 +428,7 @@ pub(crate) enum Piece {
         center: Vec2,
         /// Radius (m).
         radius: f64,
-        /// Start angle (rad).
+        /// Direction (rad) from the center to the start of the arc, counterclockwise from `x`.
         from: f64,
         /// Angle of the arc (rad).
         turn: f64,

@@ -14,7 +14,7 @@ use crate::space::{Linear, Planar, Vec2};
 /// rounding errors would decide whether they touch.
 pub(super) const FLUSH: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Maximum angle (rad) of one part of a rounded corner that is divided into parts.
+/// Maximum angle (rad) of each part into which a rounded corner is divided.
 const CORNER_STEP: f64 = TAU / 24.0;
 
 /// A convex polygon whose corners may be rounded.
@@ -257,7 +257,7 @@ impl Polygon {
         Ok(Self::grown(&[from, to], radius))
     }
 
-    /// Returns the corners as round pieces.
+    /// Returns the corners as round pieces; a sharp corner has radius zero.
     pub(super) fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
         let count = self.sides.len();
         (0..count)
@@ -348,7 +348,8 @@ impl Polygon {
     }
 
     /// Returns the outward unit normal at a point (m) of the boundary; at a sharp corner, the mean of the normals of
-    /// both sides.
+    /// both sides. The point counts as lying on a side if its distance from the line of this side is less than `near`
+    /// (m).
     pub(super) fn outward(&self, point: Vec2, near: f64) -> Vec2 {
         if self.corner_radius > 0.0 {
             return self.gap(point).normal;

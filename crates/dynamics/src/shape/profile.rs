@@ -209,7 +209,8 @@ impl BarrelProfile {
     }
 
     /// Returns the outward normal at a point (m) of the boundary; at a sharp edge, the mean of the normals of head and
-    /// stave.
+    /// stave. The point counts as lying at an edge if both its coordinates differ from those of the edge by less than
+    /// `near` (m).
     pub(super) fn outward(&self, point: Vec2, near: f64) -> Vec2 {
         let normal = self.gap(point).normal;
         let head = Vec2::new(point.x.signum(), 0.0);

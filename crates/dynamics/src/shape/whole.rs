@@ -51,7 +51,7 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
 /// A point of a body, and its gap to the surface of another body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch<S: Space> {
-    /// The point (m).
+    /// The point (m), in the frame of the surface.
     pub node: S::Vector,
     /// The gap at the point.
     pub gap: Gap<S>,
@@ -139,13 +139,12 @@ pub struct Spread<S: Space> {
 /// mass (1/rad), stored in [`Wrench::moment`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes<S: Space> {
-    /// Derivative of the depth δ₀ (m) at the middle of the patch. It contains only the change of depth that arises
-    /// because the middle shifts to other points of the bodies. The change due to the motion of the bodies at the
-    /// middle is excluded.
+    /// Derivative of the depth δ₀ (m) at the middle of the patch, without the part due to the motion of the bodies at
+    /// the middle. What remains is the change of the depth because the middle shifts to other points of the bodies.
     pub middle: Wrench<S>,
     /// Derivative of `a`, the weight of the deepest point.
     pub deepest: Wrench<S>,
-    /// Derivative of `b`, the weight of the other parts of the patch.
+    /// Derivative of `b`, the weight of all springs except the one at the deepest point.
     pub others: Wrench<S>,
 }
 
@@ -160,10 +159,9 @@ impl<S: Space> Default for Slopes<S> {
 /// Weights of the parts of a patch, each between 0 and 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shares<R> {
-    /// Weight of the deepest point, `a` in [`Spread`].
+    /// Weight of the spring at the deepest point, `a` in [`Spread`].
     pub deepest: R,
-    /// Weight of the other parts, `b` in [`Spread`]; less than `a` only if the bodies are rotated out of the plane of
-    /// the patch.
+    /// Weight of all other springs, `b` in [`Spread`]; less than `a` only if the bodies are inclined to each other.
     pub others: R,
     /// Maximum share of the friction that acts at a distance from the center of pressure; zero for a point contact.
     pub aside: R,
@@ -179,7 +177,7 @@ pub enum Axes<S: Space> {
 }
 
 impl<S: Space> Axes<S> {
-    /// Returns all axes.
+    /// Returns the axes as a slice: one for a line, two for a face.
     #[inline(always)]
     pub(crate) fn all(&self) -> &[S::Vector] {
         match self {

@@ -84,10 +84,10 @@ impl<R: Real> Barrel<R> {
         corner.sqrt().max(self.stave_radius - self.stave_offset) + self.rounding
     }
 
-    /// Returns distance and normal at a point (m).
+    /// Returns the signed distance (m) of a point (m) from the surface, and the surface normal.
     ///
-    /// Outside of the core the nearest point lies on the stave, on a head, or on the circle where they meet; inside,
-    /// the nearest point is taken on the stave or the head, whichever is nearer.
+    /// Outside of the core, the nearest point of the core lies on the stave, on a head, or on the circle where they
+    /// meet. Inside, it is taken on the stave or on the head, whichever is nearer.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
@@ -158,8 +158,9 @@ impl<R: Real> Barrel<R> {
 }
 
 impl<R: Real> Barrel<R> {
-    /// Returns the first three derivatives, in the direction `along` (m), of half the squared distance from the center
-    /// of the stave's arc: `½ (x² + (r + a)²)` at a point (m) at the distance `r` from the axis.
+    /// Returns the first three derivatives of `½ (x² + (r + a)²)` with respect to `t` at the position `point + t along`
+    /// (m), for `t = 0`. Here `r` is the distance from the axis, and the quantity is half the squared distance from the
+    /// center of the stave's arc.
     #[inline(always)]
     pub(super) fn derivatives(&self, point: Vec3<R>, along: Vec3<R>) -> [R; 3] {
         let inverse = R::splat(1.0) / (point.y * point.y + point.z * point.z).sqrt();

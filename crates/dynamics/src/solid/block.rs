@@ -22,7 +22,8 @@ impl<R: Real> Block<R> {
         self.half.length() + self.rounding
     }
 
-    /// Returns distance and normal at a point (m); inside the core, the distance and normal of the nearest face.
+    /// Returns the signed distance (m) of a point (m) from the surface, and the surface normal. Inside the core, both
+    /// are those of the nearest face.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));

@@ -205,7 +205,7 @@ struct Support {
     across: f64,
     /// Unit vector in the circumferential direction.
     around: Vec3,
-    /// Component β, perpendicular to the axis of the barrel, of the direction whose support point this is.
+    /// Component β of the direction for which this support point was computed; see [`Set::support`].
     outward: f64,
 }
 

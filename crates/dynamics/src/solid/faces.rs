@@ -104,9 +104,9 @@ struct Face {
 impl Face {
     /// Returns the face of a block whose outward normal is closest to a direction in the frame of the block.
     ///
-    /// `frame` is the rotation from the frame of the block to that of the target, where the origin of the block lies at
-    /// `at` (m). The second vector along the face is reversed if necessary, so that the cross product of the two
-    /// vectors points to the same side as `up`. If `up` is `None`, the outward normal is used instead.
+    /// `frame` is the rotation from the frame of the block to that of the target, and `at` the origin (m) of the block
+    /// in the frame of the target. The second vector along the face is reversed if necessary, so that the cross product
+    /// of the two vectors points to the same side as `up`. If `up` is `None`, the outward normal is used instead.
     fn of(block: &Block, direction: Vec3, at: Vec3, frame: Rotation3, up: Option<Vec3>) -> Self {
         let steep = [direction.x.abs(), direction.y.abs(), direction.z.abs()];
         let halves = [block.half.x, block.half.y, block.half.z];

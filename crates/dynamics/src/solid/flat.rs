@@ -22,7 +22,7 @@ pub(super) struct Flat {
     pub(super) axes: [Vec3; 2],
 }
 
-/// Sine of the largest angle at which two solids touch along a line or a face.
+/// Sine of the maximum angle between two solids that touch along a line or over a face.
 pub(super) const WIDEST: f64 = 0.1;
 /// Extent (m) of a line or face from its middle, above which the line or face has full weight.
 const LONG: f64 = 0.05;

@@ -16,8 +16,8 @@ pub struct Bulk {
 }
 
 impl Bulk {
-    /// Creates a distribution about the origin, symmetric about every plane of the frame, from its mass (kg) and `∫
-    /// x² dm`, `∫ y² dm`, `∫ z² dm` (kg·m²).
+    /// Creates a distribution that is symmetric about the coordinate planes, from its mass (kg) and the second moments
+    /// `∫ x² dm`, `∫ y² dm` and `∫ z² dm` (kg·m²).
     fn symmetric(mass: f64, second: Vec3) -> Self {
         let Vec3 { x, y, z } = second;
         let rows = [Vec3::new(x, 0.0, 0.0), Vec3::new(0.0, y, 0.0), Vec3::new(0.0, 0.0, z)];
@@ -61,7 +61,7 @@ impl Bulk {
         outside.of_density(mass / outside.volume)
     }
 
-    /// Returns the mass distribution after the body is rotated and then displaced (m).
+    /// Returns the mass distribution after the body is rotated about the origin and then displaced by `offset` (m).
     #[must_use]
     pub fn placed(&self, offset: Vec3, rotation: Rotation3) -> Self {
         // R S Rᵀ: first its rows, then its columns.
@@ -92,7 +92,7 @@ impl Bulk {
     /// the principal axes to the frame of the distribution.
     ///
     /// Uses Jacobi's method: each step eliminates the largest off-diagonal element by a rotation about one axis, until
-    /// the matrix is diagonal. For distributions that are symmetric about the planes of their frame, the principal axes
+    /// the matrix is diagonal. For distributions that are symmetric about their coordinate planes, the principal axes
     /// are the axes of the frame.
     pub fn principal(&self) -> (Vec3, Quaternion) {
         let mut turned = Quaternion::identity();
@@ -293,14 +293,15 @@ fn integral<const N: usize>((from, to): (f64, f64), of: impl Fn(f64) -> [f64; N]
     sum
 }
 
-/// Returns the contributions of a thin disc, per length, to the integrals of [`Revolved`]. `x` is the position (m) of
-/// the disc along the axis, and `r` its radius (m).
+/// Returns the contributions of a thin disc to the integrals of [`Revolved`], per unit length of the axis. `x` is the
+/// position (m) of the disc along the axis, and `r` its radius (m).
 fn disc(x: f64, r: f64) -> [f64; 3] {
     let area = std::f64::consts::PI * r * r;
     [area, area * x * x, 0.25 * area * r * r]
 }
 
-/// Returns the integrals over a symmetric body, given those over one half of it in the order of [`Revolved`].
+/// Returns the integrals over a symmetric body from those over one half of it, given in the order of the fields of
+/// [`Revolved`].
 fn doubled([volume, along, across]: [f64; 3]) -> Revolved {
     Revolved { volume: 2.0 * volume, along: 2.0 * along, across: 2.0 * across }
 }
@@ -329,8 +330,8 @@ fn within(barrel: &Barrel, wall: f64, end: f64) -> Revolved {
     doubled(integral((0.0, end), |x| disc(x, stave(barrel, x) - wall)))
 }
 
-/// For the part of a body of revolution below a level (m above the axis), returns the volume, the first moment upward,
-/// and the second moments along the axis, across it and upward.
+/// Returns integrals over the part of a body of revolution about `x` that is below a level (m above the axis), with `z`
+/// up: `∫ dV` (m³), `∫ z dV` (m⁴), `∫ x² dV`, `∫ y² dV` and `∫ z² dV` (m⁵).
 ///
 /// `radius` returns the radius (m) at a position along the axis, up to `end` (m) on both sides of the middle.
 fn below(level: f64, end: f64, radius: &impl Fn(f64) -> f64) -> [f64; 5] {

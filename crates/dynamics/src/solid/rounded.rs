@@ -1,4 +1,4 @@
-//! Capsules, barrels and blocks as contactors, which touch with their deepest points.
+//! Capsules, barrels and blocks as contactors, which touch at their deepest points.
 
 use super::barrel::Barrel;
 use super::block::{Block, from_block};
@@ -12,7 +12,7 @@ use crate::shape::{
 };
 use crate::space::{Rotation3, Spatial, Vec3, Wrench};
 
-/// A convex solid that touches with its deepest points. It is centered at the origin, with its axis along `x`.
+/// A convex solid that touches at its deepest points. It is centered at the origin, with its axis along `x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hull<R = f64> {
     /// A cylinder with hemispherical ends.
