@@ -64,7 +64,8 @@ struct Fixed {
     settled: Option<Settled>,
     settings: barrelstack_dynamics::Simulation,
     sticks: Vec<SoftStick>,
-    /// Number of force evaluations and number of contact elements tested before the run.
+    /// Number of force evaluations before the run, which include those of settling, and number of contact elements that
+    /// these evaluations tested.
     before: (u64, u64),
 }
 

@@ -12,7 +12,8 @@ pub struct Wave {
     pub share: f64,
     /// Length (m) of the pendulum, `g/ω²`.
     pub length: f64,
-    /// Depth (m) of the sloshing mass below the middle of the tank, if the mode is modeled as a mass on a spring.
+    /// Depth (m) below the center of the tank at which the sloshing mass is placed if the mode is modeled as a mass on
+    /// a spring.
     pub depth: f64,
 }
 
@@ -94,8 +95,8 @@ pub fn along(radius: f64, room_length: f64, filled: f64) -> Wave {
     let ratio = depth / room_length;
     let swing = tanh(PI * ratio);
     let share = 8.0 * swing / (PI * PI * PI * ratio);
-    // This depth preserves the center of mass of the wine, because the wine that does not slosh is at the middle of the
-    // barrel.
+    // This depth preserves the center of mass of the wine, because the wine that does not slosh is placed at the center
+    // of the barrel.
     let center = radius * 2.0 * b * b * b / (3.0 * area);
     Wave { share, length: room_length / (PI * swing), depth: center / share }
 }

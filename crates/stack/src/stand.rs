@@ -1,4 +1,4 @@
-//! Building and settling of the stacks of scenarios, one alone or many side by side.
+//! Building and settling of the stacks of scenarios, one stack alone or many in vector lanes.
 
 use barrelstack_dynamics::lanes::{Task, Topology, Width};
 use barrelstack_dynamics::real::Real;
@@ -64,8 +64,8 @@ impl<'a> Stack<'a> {
         Self { scenario, standing: build() }
     }
 
-    /// Returns `true` if another scenario has the same stack. The scenarios may differ in motion, end time and
-    /// recording.
+    /// Returns `true` if this is also the stack of another scenario, which may differ from the scenario of this
+    /// stack in motion, end time and recording.
     pub(crate) fn is_of(&self, other: &Scenario) -> bool {
         let own = self.scenario;
         let stands = |scenario: &Scenario| {
@@ -92,7 +92,7 @@ pub fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure>
     standing
 }
 
-/// Settles built stacks and installs their devices; `None` if stopped.
+/// Settles built stacks and installs their devices. Returns `None` if `stop` returned `true`.
 ///
 /// Stacks of the same topology settle side by side, and the result of each is bit-identical to settling it alone.
 pub(crate) fn stand_all(
@@ -125,8 +125,8 @@ pub(crate) fn stand_all(
     Some(())
 }
 
-/// Settles the stacks that `wanted` selects, and replaces each stack that fails by its error. Returns `None` if
-/// stopped.
+/// Settles the stacks that `wanted` selects. If a stack does not settle, the error replaces it. Returns `None` if
+/// `stop` returned `true`.
 fn rest(
     width: Width,
     stacks: &mut [Stack<'_>],

@@ -28,8 +28,8 @@ const REFERENCE: f64 = 0.01;
 /// Halving the step changes the time of every fall by at most 0.3 ms (`tests/paper.rs`).
 pub const IMPACT_SHARE: f64 = 0.4;
 
-/// Penetration up to which steps are not divided in impacts, as a fraction of `REFERENCE`; the penetration of resting
-/// contacts is smaller.
+/// Penetration up to which steps are not divided during impacts, as a fraction of `REFERENCE`; the penetration of
+/// resting contacts is smaller.
 ///
 /// With this value, the energy residual of the demo scenario in the view along the barrels is 1.1e-5; with a value four
 /// times as large, it is 2.4e-4.
@@ -38,9 +38,9 @@ pub const WHOLE_STEP: f64 = 0.05;
 /// Largest time step as a fraction of the critical time step at the penetration [`WHOLE_STEP`], including tangential
 /// springs.
 ///
-/// Bodies at rest require stability only. For resting contacts, steps are not divided at penetrations up to twice
-/// [`WHOLE_STEP`]. At twice [`WHOLE_STEP`], the step is 0.83 of the critical step, since the stiffness grows with the
-/// square root of the penetration.
+/// Impacts require accuracy, but bodies at rest require stability only. For resting contacts, steps are therefore
+/// divided only above twice the penetration [`WHOLE_STEP`]. At that penetration, the step is 0.83 of the critical step,
+/// since the stiffness grows with the square root of the penetration.
 pub const WHOLE_STEP_SHARE: f64 = 0.7;
 
 /// Assumed load on the lightest body through its impact contacts, divided by the weight of the heaviest body.
@@ -57,8 +57,8 @@ const LOADED_SHARE: f64 = 1.4;
 /// the contact.
 ///
 /// The damper of the contact engages abruptly within a step, which causes a first-order error. With this fraction, a
-/// restitution of 0.7 is reproduced within 0.002, and a restitution of 0.3 within 0.003, apart from the work of gravity
-/// during the contact.
+/// restitution of 0.7 is reproduced within 0.002, and a restitution of 0.3 within 0.003. These errors do not include
+/// the effect of the work of gravity during the contact.
 const RESTITUTION_SHARE: f64 = 0.005;
 
 /// Gap (m) at full scale within which closing contacts are detected in advance if their damping is specified by a
@@ -72,12 +72,12 @@ const FORESEEN_REBOUND: f64 = 0.05;
 /// (2008), are overestimated by a factor of up to four.
 const NEARLY_STRAIGHT: (f64, f64) = (1.0, 4.0);
 
-/// Time step of a model, and its division during impacts.
+/// Time step of a model, and the rule by which it is divided into substeps during impacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeStepping {
     /// Time step (s) outside of impacts, rounded down to one or two significant digits at full scale.
     pub step: f64,
-    /// Division of the step during impacts.
+    /// Rule by which a step is divided into substeps during impacts.
     pub substepping: Substepping<f64>,
 }
 
@@ -173,7 +173,8 @@ pub fn keep_restitution<S: Space<Real = f64>>(
     model.set_substepping(substepping);
 }
 
-/// Returns the critical time step (s) of the contacts of an interface of a planar model at a penetration (m).
+/// Returns the critical time step (s), at a penetration (m), of all contacts to which one interface of a planar model
+/// applies.
 pub(crate) fn critical_of_interface(model: &Model<Planar>, depth: f64, interface: usize) -> f64 {
     critical(model, 0.0, depth, &|pair| pair.interface == interface)
 }
@@ -205,7 +206,8 @@ fn loaded(model: &Model<Planar>) -> f64 {
     })
 }
 
-/// Returns the critical time step (s) of an assembly whose steps are divided in impacts; infinity if nothing can touch.
+/// Returns the critical time step (s) of an assembly, given that steps are divided into substeps during impacts.
+/// Returns infinity if nothing can touch.
 ///
 /// For an explicit method, this step is 2/ω with ω² = Σk/m for the stiffest body. The sum covers the springs of all
 /// nodes on one boundary of the body that face one target, and the force elements of the body. Nonlinear normal
@@ -264,8 +266,8 @@ fn of_elements<'a>(
     2.0 * rates.into_iter().fold(0.0, f64::max)
 }
 
-/// Returns twice the largest rate over all pairs and their free bodies, since a body may be in contact from below and
-/// from above.
+/// Returns twice the largest rate over all pairs and their free bodies. The factor of two accounts for a body that is
+/// in contact both from below and from above.
 fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> f64) -> f64 {
     let mut most = 0.0_f64;
     let bodies = model.bodies();
@@ -375,8 +377,8 @@ fn is_straight(nodes: &[Node<Planar>]) -> bool {
 
 /// Returns the mean of the squared lever arms (m²) of the node forces about the center of mass.
 ///
-/// The result is zero for [`Nodes::Rolling`], because a rolling node turns the body by friction only, and friction is
-/// limited by the tangential spring.
+/// The result is zero for [`Nodes::Rolling`]: the normal force on a rolling node does not turn the body, and the
+/// friction that turns it is limited by the tangential spring.
 fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     match nodes {
         Nodes::Fixed(nodes) if !nodes.is_empty() => {

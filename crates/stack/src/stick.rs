@@ -30,7 +30,8 @@ pub(crate) struct SoftStick {
 }
 
 impl SoftStick {
-    /// Returns those interfaces of a stack at rest whose friction springs are too soft for a ground motion.
+    /// Returns the interfaces of a stack at rest whose friction springs cause a relative error of slip above
+    /// [`REPORTED`] under a ground motion; none without a motion.
     pub(crate) fn of(
         assembly: &Assembly,
         rest: &Scratch<Planar>,

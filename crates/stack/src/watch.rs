@@ -61,7 +61,7 @@ pub type Eye<'a> = dyn FnMut(Glance<'_>) -> ControlFlow<()> + 'a;
 pub enum Pace {
     /// At the start and every 0.05 s of simulated time.
     Time,
-    /// At the start and after every given number of accepted steps.
+    /// At the start, and then each time this number of steps has been accepted.
     Steps(NonZero<u64>),
 }
 
@@ -95,8 +95,8 @@ pub fn after_collapse(scenario: &Scenario) -> f64 {
 }
 
 impl<R: Real> End<R> {
-    /// Observes an accepted state. Returns the lanes in which the time after a collapse has elapsed, and the lanes in
-    /// which all bodies are at rest.
+    /// Observes an accepted state. Returns the lanes in which the run has continued after a collapse for as long as it
+    /// may, and the lanes in which all bodies are at rest.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn observe(

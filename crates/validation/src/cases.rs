@@ -32,9 +32,9 @@ pub enum Quantity {
     /// Displacement (m) along `x` of the body relative to the ground at the end.
     #[serde(rename = "way")]
     Displacement,
-    /// The value of `vary` above which the body overturns.
+    /// Value of the varied parameter above which the body overturns.
     OverturningBorder,
-    /// The value of `vary` above which the body lifts a corner.
+    /// Value of the varied parameter above which a corner of the body lifts off.
     UpliftBorder,
 }
 

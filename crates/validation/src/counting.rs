@@ -131,7 +131,7 @@ pub struct Work {
     pub steps: u64,
     /// Number of nodes in contact, summed over the steps.
     pub touching: u64,
-    /// Operations of the whole run, including its start.
+    /// Arithmetic operations of the whole run, including its initialization.
     pub operations: Operations,
 }
 

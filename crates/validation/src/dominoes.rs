@@ -13,7 +13,7 @@ use crate::{Failure, GRAVITY};
 /// Thickness of a domino as a fraction of its height.
 pub const DOMINO: f64 = 0.15;
 
-/// A row of dominoes of one meter height.
+/// A row of dominoes that are 1 m high.
 pub struct Row {
     /// Number of dominoes.
     pub count: u32,

@@ -12,8 +12,8 @@ const WORDS: [&str; 13] = [
     "twelve",
 ];
 
-/// Returns a title from bodies and motion, such as "Six barrels on three levels, elCentro.AT2"; for a free scene, the
-/// old title with ", changed" appended.
+/// Returns a title that describes the stack and its motion, such as "Six barrels on three levels, elCentro.AT2". For a
+/// free scene, returns the title of the scenario with ", changed" appended.
 pub(super) fn of(scenario: &Scenario) -> String {
     let Scene::Stack { stack, .. } = &scenario.scene else {
         return format!("{}, changed", scenario.title);

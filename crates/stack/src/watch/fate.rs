@@ -58,11 +58,12 @@ pub struct Fate {
     /// Time (s) at which the drop of the body exceeded the threshold of a fall; `None` if the body did not fall.
     pub fell_at: Option<f64>,
     /// Time (s) at which the body landed: the first time after [`Fate::fell_at`] at which the body moved downward at
-    /// less than half of its largest downward speed.
+    /// less than half of its largest downward speed. `None` if the body has not landed.
     pub landed_at: Option<f64>,
-    /// Largest downward speed (m/s) between fall and landing.
+    /// Largest downward speed (m/s) between fall and landing; `None` if the body has not landed.
     pub landing_speed: Option<f64>,
-    /// Largest force (N) on the body after it had fallen.
+    /// Largest magnitude (N) of the total force on the body, excluding gravity, from [`Fate::fell_at`] on,
+    /// including the impact on landing; `None` if the body did not fall.
     pub fall_force: Option<f64>,
     /// Largest drop (m) below its position at rest.
     pub drop: f64,
@@ -116,13 +117,13 @@ pub struct Fates<R: Real = f64> {
     bodies: Vec<Followed<R>>,
     /// Time (s) at which the first body left its seat; infinite until then.
     collapse: R,
-    /// The first body that left its seat.
+    /// In each lane, the first body that left its seat; `None` until then.
     first: PerLane<Option<BodyId>>,
     /// Time (s) at which the first barrel counted as fallen; infinite until then.
     first_fall: R,
 }
 
-/// Kind and supports of a body, equal in all lanes.
+/// Kind and supports of a body, which are the same in all lanes.
 #[derive(Clone, Debug)]
 struct BodySupport {
     kind: PartKind,
@@ -162,7 +163,7 @@ struct Followed<R: Real> {
     landed_at: R,
     /// Largest downward speed (m/s) between fall and landing.
     landing_speed: R,
-    /// Largest force (N) on the body after its fall.
+    /// Largest magnitude (N) of the total force on the body, excluding gravity, from `fell_at` on.
     fall_force: R,
     drop: R,
     peak_displacement: R,
@@ -257,17 +258,17 @@ impl Fates {
         }
     }
 
-    /// Returns the time (s) at which the first body left its seat.
+    /// Returns the time (s) at which the first body left its seat; `None` if no body has left its seat.
     pub fn collapse_time(&self) -> Option<f64> {
         known(self.collapse)
     }
 
-    /// Returns the first body that left its seat.
+    /// Returns the first body that left its seat; `None` if no body has left its seat.
     pub fn first(&self) -> Option<BodyId> {
         self.first[0]
     }
 
-    /// Returns the time (s) at which the first barrel counted as fallen.
+    /// Returns the time (s) at which the first barrel counted as fallen; `None` if no barrel has fallen.
     pub fn first_fall(&self) -> Option<f64> {
         known(self.first_fall)
     }

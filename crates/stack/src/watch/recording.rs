@@ -58,10 +58,11 @@ pub struct JointForces {
     pub horizontal: Vec<f64>,
 }
 
-/// Number of histories of the ground: acceleration, velocity and displacement, horizontal and vertical.
+/// Number of recorded histories of the ground motion: acceleration, velocity and displacement, each horizontal and
+/// vertical.
 const GROUND: usize = 6;
 
-/// Number of histories of a body: two displacements and a rotation.
+/// Number of recorded histories of a body: two displacements and a rotation.
 const BODY: usize = 3;
 
 /// Recorded data of a run.
@@ -78,7 +79,7 @@ pub struct Recording {
     frame_rate: f64,
     history_rate: f64,
     rest: Vec<Vec2>,
-    /// Observer of the forces that `joints` records.
+    /// Observer of the current and largest forces between bodies, from which `joints` is filled.
     forces: Joints,
     started: bool,
 }

@@ -21,13 +21,14 @@ pub const CLIMB: f64 = 0.005;
 /// This duration is longer than half a period of the tallest stack, so that a turning point is not mistaken for rest.
 pub const HOLD: f64 = 3.0;
 
-/// Largest acceleration of calm ground, as a fraction of gravity.
+/// Largest acceleration at which the ground may count as calm, as a fraction of gravity.
 ///
 /// Such an acceleration is too small to slide or tip bodies, and the last third of many records is weaker. Unless only
 /// the verdict is requested, a standing stack is nevertheless simulated to the end of the motion, since its
 /// displacements are results.
 const CALM: f64 = 0.02;
-/// Largest acceleration of calm ground as a fraction of gravity, divided by the smallest friction coefficient.
+/// Largest acceleration at which the ground may count as calm, as a fraction of gravity, divided by the smallest
+/// friction coefficient.
 const CALM_OF_FRICTION: f64 = 0.1;
 
 /// Largest height of the center of a barrel that counts as lying on the floor, divided by the radius of the barrel.
@@ -39,9 +40,9 @@ pub enum Ending {
     /// All bodies had come to rest on ground that was still. After a collapse, or if only the verdict is requested,
     /// calm ground is sufficient.
     Rest,
-    /// The run had continued after a collapse for the time that the scenario states.
+    /// The run had continued after a collapse for the time that the scenario specifies.
     AfterCollapse,
-    /// The duration that the scenario sets was reached.
+    /// The duration that the scenario specifies was reached.
     Duration,
     /// The maximum time after the end of the motion had elapsed while bodies still moved.
     Patience,
@@ -156,7 +157,8 @@ pub fn quiet_from(until: Until, end: f64, calm: impl FnOnce() -> f64) -> (f64, f
     }
 }
 
-/// Returns the largest acceleration of calm ground, as a fraction of gravity, for a stack with given contact laws.
+/// Returns the largest acceleration at which the ground counts as calm, as a fraction of gravity, for a stack with
+/// given contact laws.
 pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
     let holding = laws.iter().map(|interface| match interface.friction {
         FrictionLaw::Coulomb { kinetic_coefficient, .. } => CALM_OF_FRICTION * kinetic_coefficient,

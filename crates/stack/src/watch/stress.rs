@@ -7,8 +7,8 @@
 //! kinds of contact are comparable. A fixed length keeps stress proportional to force, as in EN 1995-1-1, 6.1.5, for
 //! timber under compression across the grain. (Hertz's half-width between an oak stave and a steel bar changes with the
 //! force. It is about 1 mm, less than the deflection of a stave in bending.) On a rack, there is one value for each
-//! node and for each place of a contact without nodes. The boundary of a barrel is divided into cells, and a contact
-//! loads all cells within its tributary length.
+//! fixed node and for each other contact element. The boundary of a barrel is divided into cells, and a contact loads
+//! all cells within its tributary length.
 //!
 //! At rest, the stress of every point times its [length](StressEnvelope::lengths) is the contact force on this point,
 //! so the sum over the boundary is the sum of the contact forces on the body.
@@ -74,17 +74,18 @@ pub struct TotalForce {
 /// Division of a boundary into the points at which stresses are recorded.
 #[derive(Clone, Copy, Debug)]
 enum Cells {
-    /// Cells by angle around a circle with this radius (m).
+    /// Cells of equal angle around a circle with this radius (m).
     Around(f64),
-    /// Cells by `x` along a profile with this half length (m): the cells of the upper half, followed by the cells of
-    /// the lower half.
+    /// Cells of equal length in `x` along a profile with this half length (m): the cells of the upper half, followed by
+    /// the cells of the lower half.
     Along(f64),
-    /// One point for every node, and for every place of a contact without nodes.
+    /// One point for every fixed node of the body, and one for every other contact element at its first contact.
     Nodes,
 }
 
 impl StressEnvelope {
-    /// Returns `true` if the values belong to nodes and contact places of the body, not to cells along its boundary.
+    /// Returns `true` if the values belong to fixed nodes and other contact elements of the body, not to cells along
+    /// its boundary.
     pub fn is_on_nodes(&self) -> bool {
         matches!(self.cells, Cells::Nodes)
     }
@@ -169,7 +170,7 @@ impl StressEnvelope {
 pub struct Stresses {
     /// One envelope for every barrel and rack, in the order of the bodies.
     pub envelopes: Vec<StressEnvelope>,
-    /// Index of the envelope of every body, if it has one.
+    /// For every body, the index of its envelope; `None` if it has none.
     of_body: Vec<Option<usize>>,
 }
 

@@ -35,7 +35,7 @@ pub struct FieldCase {
     pub unknowns: [f64; UNKNOWNS],
     /// `true` if the stack fell.
     pub falls: bool,
-    /// Mode of the collapse, if the stack fell.
+    /// Mode of the collapse; empty if the stack did not fall.
     pub mode: String,
     /// Share of the barrels of the stack that fell.
     pub fallen: f64,

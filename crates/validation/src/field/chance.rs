@@ -49,7 +49,7 @@ pub struct Point {
     pub azimuth: f64,
 }
 
-/// Returns the values that the coefficients multiply.
+/// Returns the regressors at a point, in the order of their coefficients.
 fn features(levels: usize, point: &Point) -> Vec<f64> {
     let mut axes = vec![(levels as f64 - 4.0) / 1.4];
     for ((value, median), unit) in point.unknowns.iter().zip(MEDIANS).zip(UNITS) {
@@ -107,7 +107,7 @@ fn forward(upper: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
 }
 
 impl Chance {
-    /// Fits the cases of a study.
+    /// Fits the regression to the cases of a study.
     pub fn fit(cases: &FieldCases) -> Self {
         let point = |case: &FieldCase| Point {
             unknowns: case.unknowns,

@@ -37,12 +37,12 @@ pub struct Share {
     pub levels: usize,
     /// Number of cases that fall, and number of all cases.
     pub count: (u32, u32),
-    /// 95 % interval of the share of the simulated cases that fall.
+    /// 95 % confidence interval (Wilson score interval) of the share of the simulated cases that fall.
     pub design: Interval,
     /// Fitted probability of a fall, averaged over the simulated cases.
     pub fitted: f64,
-    /// Probability of a fall if the unknowns have their medians in the catalog, under the unscaled record, averaged
-    /// over the azimuth.
+    /// Probability of a fall under the unscaled record if every unknown equals its median in the catalog, averaged over
+    /// the azimuth.
     pub medians: f64,
     /// Mean and range of the probability of a fall over the prior.
     pub prior: Range,
@@ -59,7 +59,7 @@ pub struct Posterior {
     /// Name of the set of statements on which the posterior is conditioned, such as `prior` (no statement) or
     /// `all statements`.
     pub given: String,
-    /// Effective number of draws.
+    /// Effective number of draws, (Σ w)²/Σ w² for the weights w (Kish).
     pub effective: f64,
     /// Mean likelihood over the prior.
     pub evidence: f64,
@@ -128,7 +128,11 @@ impl Results {
         Ok(results)
     }
 
-    /// Weights the draws by the likelihoods of all statements for which a likelihood is defined.
+    /// Returns the weights of the draws, from the likelihoods of all statements for which a likelihood is defined. Adds
+    /// the posteriors, bins and predictions of these statements to the results.
+    ///
+    /// # Errors
+    /// If the cases of a study are missing.
     fn weigh(
         &mut self,
         observations: &Statements,

@@ -25,7 +25,7 @@ pub(super) struct Bounds<R: Real = f64> {
     pub(super) from: Vec2<R>,
     /// First point or direction past the range.
     pub(super) to: Vec2<R>,
-    /// On a barrel, `true` if the range is above the axis; on a rack, `true` if the range is known.
+    /// On a barrel, `true` if the range is above the axis; on a rack, `true` if the loaded point has been determined.
     pub(super) above: R::Mask,
     /// Largest force (N) since the contact point entered the range.
     most: R,
@@ -34,7 +34,7 @@ pub(super) struct Bounds<R: Real = f64> {
 /// Geometry of the set of contact points for which a contact element loads the same cells of a body.
 #[derive(Clone, Copy, Debug)]
 enum CellRange {
-    /// All points of a rack: every contact of an element loads the envelope point of the first contact of the element.
+    /// All points of a rack: a contact element always loads the envelope point that it loaded at its first contact.
     Everywhere,
     /// Points in a wedge, counterclockwise from the direction `from` to the direction `to` of [`Bounds`].
     Wedge,
@@ -119,7 +119,7 @@ impl<R: Real> Bounds<R> {
     }
 }
 
-/// Place of a contact element on one of its bodies.
+/// Place of a contact element on one of its two bodies.
 #[derive(Clone, Debug, Default)]
 struct Pressed {
     /// Index of the stress envelope of the body.
@@ -134,7 +134,7 @@ struct Pressed {
 #[derive(Clone, Debug, Default)]
 struct Lane {
     stresses: Stresses,
-    /// The place of every element, in the order of [`StressWatch::bounds`].
+    /// For every entry of [`StressWatch::bounds`], the place of its contact element on its body.
     pressed: Vec<Pressed>,
     /// Index of the envelope point that a contact on a rack loads, by pair, contact element and body.
     on_racks: BTreeMap<(usize, u32, BodyId), usize>,
@@ -152,12 +152,11 @@ pub(crate) struct StressWatch<R: Real = f64> {
     /// The observed lanes in which a body has left its seat.
     lost: R::Mask,
     pairs: Vec<Pair<R>>,
-    /// Index of the first entry of every pair in `bounds`.
+    /// For every pair, the index of its first entry in `bounds`; [`NEVER`] if the pair has not touched yet.
     first: Vec<usize>,
     /// One entry for each combination of a contact element and one of its two bodies, for all pairs that have touched.
     bounds: Vec<Bounds<R>>,
-    /// Sum of the normal contact forces (N) on every body: the sum in the current step, and the maximum of the sum so
-    /// far.
+    /// For every body, the sum of the normal contact forces (N) in the current step, and the largest sum so far.
     totals: Vec<[R; 2]>,
 }
 
