@@ -33,8 +33,8 @@ pub const TUBE_CORNER: f64 = 0.012;
 
 /// Adds the racks and barrels of all levels.
 ///
-/// Returns the height (m) of the stack, and the displacement (m) of a rack relative to the level below beyond which the
-/// rack is no longer supported.
+/// Returns the height (m) of the stack, and the displacement (m) of a rack, relative to the level below, beyond which
+/// the rack is no longer supported.
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
     let spec = builder.spec;
     let rack = &spec.rack;
