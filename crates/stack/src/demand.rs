@@ -1,4 +1,5 @@
-//! Demands on a stack, such as drift and slip, each declared once with its name, units, and source.
+//! Demands on a stack, such as drift and slip, each declared once with its name, its units, and the expression
+//! that computes it.
 
 use barrelstack_columns::described::{self, Described, Field, Objects};
 use serde::Serialize;
@@ -24,15 +25,15 @@ pub struct Demand {
     pub meaning: &'static str,
     /// Displayed label.
     pub label: &'static str,
-    /// Unit in files, which is SI; `1` for a ratio.
+    /// SI unit, which is the unit in files; `1` for a ratio.
     pub unit: &'static str,
     /// Displayed unit.
     pub shown_unit: &'static str,
-    /// Factor that converts the value in files to the displayed value.
+    /// Factor that converts the value from the SI unit to the displayed unit.
     pub factor: f64,
     /// Number of displayed decimals; further digits are not significant.
     pub decimals: usize,
-    /// Returns the value in files; `None` if the demand does not apply.
+    /// Returns the value in the SI unit; `None` if the demand does not apply.
     pub get: fn(&Demands) -> Option<f64>,
 }
 
@@ -48,8 +49,8 @@ impl Demand {
     }
 }
 
-/// Declares the demands. Each line has a doc comment, the key and the unit in files, the label, the factor, the unit
-/// and the decimals for display, and the source.
+/// Declares the demands. Each entry has a doc comment, the key and the unit in files, then the label, the conversion
+/// factor, the unit and the number of decimals for display, and the expression that computes the demand.
 macro_rules! demands {
     ($(
         $(#[doc = $doc:literal])+
@@ -186,7 +187,7 @@ impl Sources<'_> {
         })
     }
 
-    /// Returns the stress around a barrel of the bottom level; `None` for any other body.
+    /// Returns the stress envelope of a barrel of the bottom level; `None` for any other body.
     fn stress(&self, body: usize) -> Option<&StressEnvelope> {
         self.fate(body, PartKind::Barrel, Some(1))?;
         self.stresses.of(body)

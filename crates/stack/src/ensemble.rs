@@ -69,7 +69,7 @@ pub struct Audience<'a> {
 pub struct Ensemble {
     /// The cases; cases with the same stack or motion share the data of that stack or motion.
     pub cases: Vec<Prepared>,
-    /// Vector unit to use; by default the widest that the machine has. Results do not depend on this choice.
+    /// Vector unit to use; `None` for the widest that the machine has. Results do not depend on this choice.
     pub lanes: Option<Width>,
 }
 

@@ -71,8 +71,8 @@ impl Scenario {
     /// afterwards.
     ///
     /// `fetch` returns the content of a file by its path; records already in memory are not fetched. A run loads files
-    /// with [`from_disk`]. On failure `fetch` returns the message of the operating system, such as "there is no such
-    /// file".
+    /// with [`from_disk`]. On failure, `fetch` returns the message from the operating system, such as "there is no
+    /// such file".
     ///
     /// ```
     /// use barrelstack_stack::Scenario;

@@ -12,7 +12,7 @@ pub fn cores() -> usize {
 /// Runs all tasks on all cores and returns their results in the order of the tasks.
 ///
 /// Threads take the tasks in order, so long tasks should come first. The assignment of tasks to threads does not affect
-/// results. `done` is called with the number of finished tasks.
+/// results. After each task, `done` is called with the number of tasks finished so far.
 pub fn map<T: Sync, R: Send>(
     tasks: &[T],
     work: impl Fn(&T) -> R + Sync,

@@ -3,10 +3,10 @@
 //! A barrel touches its rack at the supports of the cradle. The underside of a rack touches the bodies on which the
 //! rack stands. These contacts are the seats. All other contacts occur in impacts only.
 //!
-//! A barrel with a circular section touches another solid at its deepest point. Two solids with corners touch at the
-//! corners and arcs of both, so each of the two solids is tested against the other. A face with nodes touches at its
-//! nodes while the body that it carries lies in front of the face. Once that body has moved beside the face, its
-//! contacts are found without the nodes, so that no contact counts twice.
+//! A barrel with a circular section touches another solid at the point of the circle that is deepest in that solid. Two
+//! solids with corners touch at the corners and arcs of both, so each of the two solids is tested against the other. A
+//! face with nodes touches at its nodes while the body that it carries lies in front of the face. Once that body has
+//! moved beside the face, its contacts are found without the nodes, so that no contact counts twice.
 
 use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
 
@@ -104,8 +104,8 @@ impl Pairs<'_> {
 
     /// Returns the underside with which a solid stands on a floor; `None` if the contact uses no row of nodes.
     ///
-    /// If constants are stated per seat, a tube that spans the whole rack has one seat at each end instead of a row of
-    /// nodes.
+    /// If the constants of the contact law are stated per seat, a tube that spans the whole rack has one seat at each
+    /// end instead of a row of nodes.
     fn row_on_floor(&self, touch: &Touch) -> Option<NodedFace> {
         let per_seat = self.builder.spec.interfaces.rack_ground.basis == Basis::Seat;
         touch.below.filter(|_| !(per_seat && touch.seat == Seat::OnSupports))

@@ -30,9 +30,10 @@ pub(crate) struct Solid {
 pub(crate) enum Seat {
     /// No role: the solid touches other bodies in impacts only.
     None,
-    /// The rack stands on this solid, which rests on the ground or on the rack's support with this index.
+    /// The rack stands on this solid. The solid rests on the ground, or on the body with this index in the list of the
+    /// rack's supports.
     OnSupport(usize),
-    /// The rack stands on this solid, which rests on the ground or on any support of the rack.
+    /// The rack stands on this solid. The solid rests on the ground, or on any body in the list of the rack's supports.
     OnSupports,
     /// The solid carries the barrel of the rack with this index.
     Barrel(usize),
@@ -53,13 +54,14 @@ impl Seat {
     }
 }
 
-/// Contact data of a solid of a body. Their index in the body is that of the surface of the solid.
+/// Contact data of one solid of a body. The data of the solids are in the order of the surfaces of the body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) seat: Seat,
     /// `true` if the solid never touches a barrel.
     pub(super) out_of_plane: bool,
-    /// Index of the node set for the whole boundary: its corners and arcs, or the single node of a circle.
+    /// Index into the node sets of the body, for the whole boundary of the solid: its corners and arcs, or the single
+    /// node of a circle.
     pub(super) exact: usize,
     /// The underside, if it carries nodes.
     pub(super) below: Option<NodedFace>,
@@ -70,11 +72,11 @@ pub(super) struct Touch {
 /// A flat face of a solid that carries nodes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NodedFace {
-    /// Index, in the body, of the node set along the face.
+    /// Index into the node sets of the body, for the nodes along the face.
     pub(super) nodes: usize,
-    /// Index, in the body, of the node set of the solid's corners and arcs that are not ends of the face.
+    /// Index into the node sets of the body, for the corners and arcs of the solid that are not ends of the face.
     pub(super) others: usize,
-    /// Index of the face in its body.
+    /// Index into the faces of the body.
     pub(super) face: usize,
 }
 

@@ -31,8 +31,10 @@ pub const BAR_RADIUS: f64 = 0.015;
 /// cores of two tubes (the parts inside the rounding) therefore never touch.
 pub const TUBE_CORNER: f64 = 0.012;
 
-/// Adds all levels. Returns the height (m) of the stack and the displacement (m) beyond which a rack is no longer
-/// supported.
+/// Adds the racks and barrels of all levels.
+///
+/// Returns the height (m) of the stack, and the displacement (m) of a rack, relative to the level below, beyond which
+/// the rack is no longer supported.
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
     let spec = builder.spec;
     let rack = &spec.rack;
@@ -60,7 +62,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
     Ok((height, reach(rack, radius, &spec.interfaces.barrel_rack.friction)))
 }
 
-/// Returns the displacement (m) across the barrels below beyond which a rack is no longer supported.
+/// Returns the displacement (m) of a rack, across the barrels below, beyond which the rack is no longer supported.
 ///
 /// A rack with feet is supported until its feet stand beside the crowns and its beam rests on the curved side of a
 /// barrel. A rack without feet is supported until the end of its beam has passed the crown and has reached the point

@@ -92,8 +92,9 @@ impl Lids {
         }
     }
 
-    /// Returns the half-width (m) of the lid over a barrel with the given radius (m), and the height (m) of the lid
-    /// above the center of the barrel.
+    /// Returns the half-width (m) of a lid in drawings, and the height (m) of the lid above the center of its barrel.
+    ///
+    /// `radius` (m) is the radius of the barrel in the model, at the length scale of `scale`.
     pub fn drawn(&self, radius: f64, scale: Similitude) -> [f64; 2] {
         [HALF_WIDTH * radius, radius + self.gap * scale.length]
     }

@@ -1,7 +1,7 @@
 //! Protective devices of a stack. Each device has a file of its own and a line in the list below.
 //!
-//! A device has a table in `[stack]`, the force elements, bodies and contact laws that it adds to a stack, and a
-//! description: display strings, candidate settings, degraded states, and cost.
+//! The table of a device in `[stack]` holds its settings. The device adds force elements, bodies or contact laws to the
+//! stack. Its description ([`Words`]) contains display strings, candidate settings, degraded states, and cost.
 //! Forces, energies and drawings of the elements are handled alike for all devices.
 
 mod chock;
@@ -118,7 +118,8 @@ pub static FREE: Words = Words { many: "elements", ..Words::silent("element") };
 pub struct Words {
     /// Singular noun for the elements of the device.
     pub one: &'static str,
-    /// Plural noun for the elements; with spaces replaced by underscores, it is also the key in the summary.
+    /// Plural noun for the elements. With spaces replaced by underscores, it is also the key of the list of elements in
+    /// the summary of a run.
     pub many: &'static str,
     /// Noun for the force in an element.
     pub force: &'static str,
@@ -218,7 +219,7 @@ impl Words {
     }
 }
 
-/// A number of levels, counted from the top; 0 for none.
+/// Kind of the fields that state a number of levels or the number of a level.
 const LEVELS: Kind = Kind::Integer(0, 12);
 
 /// Returns the lowest level with a device that is installed on the top `highest` levels of a stack with `levels`

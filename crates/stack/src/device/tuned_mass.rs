@@ -113,7 +113,7 @@ const HOLDING: f64 = 15.0;
 impl TunedMass {
     /// Half the width and half the height (m) of a mass in drawings.
     pub const HALF: [f64; 2] = [0.15, 0.03];
-    /// Description of the support of a mass, which appears in no report.
+    /// Description of the elements that support a mass. These elements appear in no report.
     pub const SUPPORT: &'static Words = &Words::silent("support");
 
     /// Returns `true` if the stack has tuned masses.

@@ -84,7 +84,7 @@ struct Batch<'a, 'b, R: Real> {
     trails: Vec<Trail>,
     /// For each lane, the time (s) at which its next sample is due; infinity in lanes without a case.
     due: R,
-    /// Progress of the case in each lane; `None` in lanes without a case.
+    /// For each lane, the guard that counts the progress of its case; `None` in lanes without a case.
     shares: Vec<Option<Share>>,
     /// The lanes that met the rest criterion in the last step.
     rested: R::Mask,

@@ -37,7 +37,8 @@ impl Prepared {
 pub struct CaseResult {
     /// Outcome, or the reason why the case could not run.
     pub outcome: Result<Outcome, String>,
-    /// Time (s) at which the first barrel counted as fallen.
+    /// Time (s) at which the first barrel counted as fallen; `None` if no barrel fell, or if the case was stopped,
+    /// could not run or is invalid.
     pub first_fall: Option<f64>,
     /// Number of barrels.
     pub barrels: usize,
@@ -56,22 +57,24 @@ pub struct CaseResult {
     pub demands: Demands,
     /// Demands over the whole run.
     pub demands_whole_run: Demands,
-    /// Names of the pairs of bodies that support or have touched each other, each with its force at rest and its
-    /// largest forces. Empty if the case could not run or is invalid.
+    /// Pairs of bodies of which one supports the other, and pairs that have touched during the run: the name of each
+    /// pair, its force at rest, and its largest forces. Empty if the case could not run or is invalid.
     pub joints: Vec<(String, Joint)>,
-    /// Largest residual displacement (m) of a barrel relative to the ground: along x in a planar model, horizontal in a
-    /// three-dimensional model.
+    /// Largest displacement (m) of a barrel relative to the ground at the end of the run: along x in a planar model,
+    /// horizontal in a three-dimensional model. `None` if the stack has no barrels or was not shaken, or if the case
+    /// was stopped or is invalid.
     pub residual_displacement: Option<f64>,
-    /// Reason for the end of the run.
+    /// Reason for the end of the run; `None` if the case was stopped or could not run.
     pub ending: Option<Ending>,
     /// Duration (s) of the ground motion that remained when the run ended; zero if the run ended at rest or covered the
-    /// whole motion.
+    /// whole motion. `None` if the case was stopped or could not run.
     pub cut: Option<f64>,
-    /// Simulated time (s) that the run reached.
+    /// Simulated time (s) that the run reached; `None` if the case was stopped or could not run.
     pub end_time: Option<f64>,
-    /// Number of accepted steps.
+    /// Number of accepted time steps; `None` if the case was stopped or could not run.
     pub steps: Option<u64>,
-    /// Residual of the energy balance divided by the energy that passed through the system.
+    /// Residual of the energy balance divided by the energy that passed through the system; `None` after a numerical
+    /// breakdown, and if the stack was not shaken or the case was stopped.
     pub energy_residual_ratio: Option<f64>,
     /// Warnings that concern the result.
     pub warnings: Vec<String>,

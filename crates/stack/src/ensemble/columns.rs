@@ -229,7 +229,8 @@ fn list(numbers: &[f64]) -> String {
     numbers.iter().map(|number| plain(*number)).collect::<Vec<_>>().join(";")
 }
 
-/// Returns the largest magnitude of the force that `of` selects, over all joints of a case.
+/// Returns the largest magnitude, over all joints of a case, of the force that `of` selects; `None` if the case has no
+/// joints.
 fn force(case: &CaseResult, of: fn(&Joint) -> f64) -> Option<f64> {
     case.joints.iter().map(|(_, joint)| of(joint).abs()).reduce(f64::max)
 }

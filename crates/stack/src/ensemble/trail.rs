@@ -12,13 +12,14 @@ pub const RATE: f64 = 16.0;
 /// Each sample is taken at the first step that reaches its time, and is stored in single precision.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trail {
-    /// The barrels of the top level.
+    /// IDs of the barrels of the top level.
     pub top: Vec<BodyId>,
-    /// Path of each barrel of the top level: `x` and `z` (m) relative to the ground.
+    /// Path of each barrel of the top level, in the order of `top`: `x` and `z` (m) relative to the ground.
     pub paths: Vec<Vec<[f32; 2]>>,
-    /// All barrels.
+    /// IDs of all barrels.
     pub barrels: Vec<BodyId>,
-    /// Last position of each barrel: `x` and `z` (m) relative to the ground, and the angle (rad).
+    /// Last position of each barrel, in the order of `barrels`: `x` and `z` (m) relative to the ground, and the angle
+    /// (rad).
     pub last: Vec<[f32; 3]>,
 }
 
@@ -57,7 +58,7 @@ impl Trail {
         }
     }
 
-    /// Records the state of a single run.
+    /// Records the positions in `state`, as [`Self::see`] does.
     pub(super) fn see_state(&mut self, state: &State<Planar>) {
         self.see(state.time, |body| state.poses[body]);
     }

@@ -42,7 +42,7 @@ pub enum RunFailure {
         MOST_KEPT / 1e9
     )]
     Memory {
-        /// Number of samples of every history.
+        /// Number of samples in each history.
         samples: f64,
         /// Number of histories.
         channels: usize,
