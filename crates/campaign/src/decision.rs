@@ -55,7 +55,7 @@ pub use sensitivity::{Effect, Group, Level};
 /// Inputs of a decision besides the study.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
-    /// Hazard curve of the site.
+    /// Hazard curve of the site; if `None`, annual rates are not computed.
     pub hazard: Option<SiteHazard>,
     /// Exposure time in years; 50 by default.
     pub years: Option<f64>,
@@ -81,7 +81,7 @@ pub struct Decision {
     pub sensitivities: Vec<Sensitivity>,
     /// Effects of the varied factors on collapse, the largest first.
     pub effects: Vec<Effect>,
-    /// Annual rates at the site.
+    /// Annual rates at the site; `None` if the request has no hazard curve.
     pub site: Option<Site>,
     /// Warnings for the reader.
     pub warnings: Vec<String>,

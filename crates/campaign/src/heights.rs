@@ -33,7 +33,7 @@ pub use json::HeightsDocument;
 pub use plan::{HIGHEST, LOWEST, VELOCITIES};
 pub(crate) use plan::{quoted, synthetic};
 
-/// Inputs of a study of heights.
+/// Inputs of a study of safe heights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// Name of the rack in the catalog.
@@ -95,9 +95,9 @@ pub struct Height {
     pub by_acceleration: LimitCurve,
     /// Mean share of the barrels that fall, for each stripe of `by_velocity`.
     pub fallen: Vec<f64>,
-    /// Static margin (m/s²): the largest steady horizontal acceleration that the stack bears, with the friction and the
-    /// seats of the catalog; `None` if the stack stands even at 1 g. For three-dimensional shaking it is the smaller of
-    /// the margins across and along the barrels.
+    /// Static margin (m/s²): the largest steady horizontal acceleration that the stack withstands, with the friction
+    /// and the seats from the catalog; `None` if the stack stands even at 1 g. For three-dimensional shaking, it is the
+    /// smaller of the margins across and along the barrels.
     pub static_margin: Option<f64>,
     /// Effect of the uncertain constants of the seats on the share of collapses, for each stripe of `by_velocity`; `None`
     /// if a run has no verdict, or if there are too few runs.
@@ -107,15 +107,15 @@ pub struct Height {
 /// Results of stacks of one height, shaken in one direction at one level of PGV.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtLevel {
-    /// Number of runs and of collapses.
+    /// Numbers of runs and of collapses.
     pub stripe: Stripe,
     /// Bounds of the probability of collapse; each is a one-sided bound with 95 % confidence (Clopper and
     /// Pearson).
     pub interval: Interval,
     /// Mean share of the barrels that fall.
     pub fallen: f64,
-    /// Range that contains the share of collapses with a probability of 95 %. It covers the uncertain constants of the
-    /// seats and the sampling error. `None` if it is unknown.
+    /// Range that contains, with a probability of 95 %, the share of collapses, given the uncertain constants of the
+    /// seats and the sampling error. `None` if a run has no verdict, or if there are too few runs.
     pub range: Option<[f64; 2]>,
 }
 
@@ -170,7 +170,7 @@ pub struct AsRecorded {
     pub acceleration: f64,
 }
 
-/// Results of a study of heights.
+/// Results of a study of safe heights.
 #[derive(Clone, Debug)]
 pub struct Heights {
     /// Inputs of the study.
@@ -209,7 +209,7 @@ impl Heights {
     }
 }
 
-/// Reason why a study of heights fails.
+/// Reason why a study of safe heights fails.
 #[derive(Debug, thiserror::Error)]
 pub enum HeightsError {
     /// The rack is not in the catalog.
@@ -235,7 +235,8 @@ pub enum HeightsError {
 /// Runs the studies of every height in every direction and evaluates them.
 ///
 /// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report`
-/// receives the number of finished runs and the total, and may cancel the run.
+/// receives the number of finished runs and the total number of runs. It cancels the runs by returning
+/// [`ControlFlow::Break`].
 ///
 /// # Errors
 /// If the rack, the barrel or the height is unknown, the rack is not supported in three dimensions, a record cannot be
@@ -287,7 +288,7 @@ pub fn heights(
     Ok(found)
 }
 
-/// Evaluates the tables of the studies; `stop` may cancel the evaluation.
+/// Evaluates the tables of the studies; `stop` cancels the evaluation by returning [`ControlFlow::Break`].
 fn gather(
     request: &Request,
     found: &[(Direction, &Study, Collected)],

@@ -85,8 +85,8 @@ pub struct Request {
     pub motions: u32,
     /// Number of rounds.
     pub rounds: u32,
-    /// Maximum cost (US$) of a protection of one stack; it is compared with the midpoint of the cost range of the
-    /// protection.
+    /// Maximum cost (US$) of a protection of one stack; `None` for no limit. A protection whose cost range has a
+    /// higher midpoint is not tried.
     pub budget: Option<f64>,
     /// Seed of all random numbers.
     pub seed: u32,
@@ -108,11 +108,11 @@ pub struct Ranked {
     /// The number follows from the central one of the three assumptions about breakage
     /// ([`Breakage::RANGE`](barrelstack::breakage::Breakage::RANGE)).
     pub burst: Estimate,
-    /// Reduction of the number of fallen barrels compared with the unprotected stack, under the same motions;
-    /// `None` for the unprotected stack.
+    /// Reduction of the number of fallen barrels compared with the unprotected stack, under the same motions.
+    /// `None` for the unprotected stack, or if fewer than two motions are common to both stacks.
     pub saved: Option<Estimate>,
     /// The reduction in `saved`, with an interval that holds for all tried protections simultaneously, since
-    /// the best of many protections is reported.
+    /// the best of many protections is reported; `None` if `saved` is `None`.
     pub saved_together: Option<Estimate>,
     /// Direction of shaking in which more barrels fall.
     pub direction: Direction,
@@ -136,14 +136,17 @@ pub struct Ranked {
     /// collapse), given the uncertain constants of the seats and the sampling error. `None` if it is unknown, or if the
     /// protection was not run in all rounds.
     pub range: Option<[f64; 2]>,
-    /// Number of barrels that fall, for every draw of the uncertain constants and the regression coefficients. A draw
-    /// has the same constants for all protections. Empty if `range` is `None` or if there are no uncertain constants.
+    /// Number of barrels that fall, for every draw of the uncertain constants and the regression coefficients. Draws
+    /// with the same index have the same constants for all protections. Empty if `range` is `None` or if there are no
+    /// uncertain constants.
     pub draws: Vec<f64>,
     /// Share of the draws of the uncertain constants in which fewer barrels fall than with the unprotected stack; a
-    /// draw with equal numbers counts as one half.
+    /// draw with equal numbers counts as one half. `None` for the unprotected stack, or if `draws` is empty for either
+    /// stack.
     pub better_than_as_it_is: Option<f64>,
-    /// Share of the draws of the uncertain constants in which fewer barrels fall than with the next protection of the
-    /// ranking.
+    /// Share of the draws of the uncertain constants in which fewer barrels fall than with the next protection in the
+    /// ranking; a draw with equal numbers counts as one half. `None` for the last protection, or if `draws` is empty
+    /// for either protection.
     pub better_than_next: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! RockScore: a number that compares racks and devices, by a protocol that never changes.
+//! RockScore: a number by which racks and devices are compared, found by a protocol that never changes.
 //!
 //! Stacks of one height, built with the scored rack and devices, are shaken across and along the barrels by
 //! fixed motions at fixed levels of peak ground velocity. They are shaken in new condition and in every worn
@@ -75,8 +75,10 @@ impl Capacity {
         })
     }
 
-    /// Returns the two levels (m/s) between which the share of collapses rises above `chance`; `stripes` are in
-    /// ascending order of intensity.
+    /// Returns the capacity without a fitted curve: [`Capacity::Between`] the two levels (m/s) between which the share
+    /// of collapses rises above `chance`. Returns [`Capacity::Above`] if the share does not exceed `chance` at any
+    /// level, and [`Capacity::Below`] if it does so already at the lowest level. `stripes` are in ascending order of
+    /// intensity.
     fn between(stripes: &[Stripe], chance: f64) -> Self {
         let above = stripes.partition_point(|stripe| stripe.fraction() <= chance);
         match (stripes[..above].last(), stripes.get(above)) {
@@ -120,8 +122,8 @@ pub struct Scored {
     /// `true` if the study draws no uncertain constant.
     certain: bool,
     /// Velocity (m/s) at which one stack in ten collapses, for every draw of the uncertain constants and the regression
-    /// coefficients. A draw has the same constants in all rows. Empty if no constant is drawn, if a run has no verdict,
-    /// or if there are too few runs.
+    /// coefficients. Draws with the same index have the same constants in all elements of [`Sheet::rows`]. Empty if no
+    /// constant is drawn, if a run has no verdict, or if there are too few runs.
     pub draws: Vec<f64>,
     /// Effect of the uncertain constants on the share of collapses at the velocity of the score; `None` if it is
     /// unknown.
@@ -131,7 +133,7 @@ pub struct Scored {
 impl Scored {
     /// Returns the range (m/s) that contains, with a probability of 95 %, the velocity at which one stack in ten
     /// collapses, given the uncertain constants and the sampling error. If no constant is drawn, the range is the 95 %
-    /// interval of that velocity.
+    /// interval of that velocity. Returns `None` if the runs do not determine a range.
     pub fn range(&self) -> Option<Interval> {
         if self.draws.is_empty() {
             return self.capacity.interval().filter(|_| self.certain);
@@ -175,7 +177,8 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Returns the result for the state and direction with the lowest capacity, which determines the score.
+    /// Returns the result for the state and direction with the lowest capacity, which determines the score; `None` if
+    /// `rows` is empty.
     pub fn weakest(&self) -> Option<&Scored> {
         let by = |a: &&Scored, b: &&Scored| a.capacity.velocity().total_cmp(&b.capacity.velocity());
         self.rows.iter().min_by(by)
@@ -197,8 +200,8 @@ impl Sheet {
     }
 
     /// Returns the range (cm/s, rounded outward) that contains the score with a probability of 95 %, given the
-    /// uncertain constants and the sampling error. Without uncertain constants, it is the 95 % interval of
-    /// [`Sheet::weakest`].
+    /// uncertain constants and the sampling error; `None` if the runs do not determine a range. Without uncertain
+    /// constants, it is the 95 % interval of [`Sheet::weakest`].
     pub fn range(&self) -> Option<[u32; 2]> {
         let draws = self.draws();
         let found =
@@ -290,7 +293,8 @@ pub fn score(
     prepared(scenario, protocol)?.run(folder, options, report)
 }
 
-/// Prepares a score: stacks the rack as the protocol requires, and checks that the stack stands in every state.
+/// Prepares a score: gives the stack the number of levels of the protocol, checks that it stands in every state, and
+/// creates a study for each state and direction.
 fn prepared(scenario: &Scenario, protocol: &Protocol) -> Result<Prepared, ScoreError> {
     let Some(stated) = scenario.stack() else {
         return Err(ScoreError::NoStack(scenario.title.clone()));

@@ -47,8 +47,11 @@ impl LimitState {
         }
     }
 
-    /// Returns the limit states to be evaluated: collapse and, if falls are known, falls of at least one
-    /// barrel, a quarter, half and all of the barrels.
+    /// Returns the limit states to be evaluated.
+    ///
+    /// The first is collapse. If the numbers of fallen barrels are known, four others follow: at least one barrel, at
+    /// least a quarter of the barrels, at least half of them, and all of them fall. For small stacks, some of the four
+    /// coincide and are listed once.
     pub(super) fn worth_telling(cases: &Cases) -> Vec<Self> {
         let most = if cases.has_losses() { cases.most_barrels() } else { 0 };
         let counts: BTreeSet<u32> =

@@ -6,16 +6,17 @@ use barrelstack_fragility::{Interval, Lognormal, grouped_mean};
 use super::cases::{Cases, JudgedCase};
 use super::curve::{LEVEL, interpolate};
 
-/// Assumed probability that a full barrel bursts, as a function of the largest force (N) on the barrel after
-/// it fell.
+/// Assumed probability that a full barrel bursts, as a function of the largest force (N) on the barrel from the time at
+/// which it counts as fallen, including its impact.
 ///
-/// The function has not been validated by drop tests. It corresponds to the central assumption of [`Breakage`] for a barrel of
-/// 269 kg that falls freely on the floor.
+/// The function has not been validated by drop tests. It corresponds to the central assumption of [`Breakage`] for a
+/// barrel of 269 kg that falls freely on the floor.
 ///
-/// With the default impact law of scenarios, 1.2 × 10⁹ N/m^1.5, a fall from 5 m gives a force of 2.2 MN. The force
-/// grows as the height to the power 0.6, so that the dispersion of the force is 0.6 times that of the height. A landing
-/// on other barrels or on barrel heads is softer than a landing on the floor, so that this function and the assumption
-/// based on the height give different probabilities there.
+/// In that assumption, half of the barrels burst in a fall from 5 m. With the default impact stiffness of scenarios,
+/// 1.2 × 10⁹ N/m^1.5, such a fall gives a force of 2.2 MN, which is the median here. The force grows as the fall height
+/// to the power 0.6, so that the dispersion of the force is 0.6 times the dispersion of the fall height in
+/// [`Breakage`]. A landing on other barrels or on barrel heads is softer than a landing on the floor. For such
+/// landings, this function and [`Breakage`] therefore give different probabilities.
 pub(super) const BURST_BY_FORCE: Lognormal = Lognormal { median: 2.2e6, dispersion: 0.36 };
 
 /// Expected losses of one stack at a level.
@@ -34,8 +35,8 @@ pub struct Loss {
     /// Expected loss of wine (m³) from barrels that burst, under each of the three assumptions in [`Breakage::RANGE`].
     /// Leaks from the bungs of intact barrels are not counted.
     pub wine: [f64; 3],
-    /// Expected number of barrels that burst, estimated from the largest force on each barrel; `None` if the study does
-    /// not record forces.
+    /// Expected number of barrels that burst, estimated from the largest force on each fallen barrel; `None` if the
+    /// study does not record forces.
     pub burst_by_force: Option<f64>,
 }
 

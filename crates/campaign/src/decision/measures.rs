@@ -14,12 +14,16 @@ pub struct MeasureRow {
     pub beside: Option<usize>,
     /// Fit of collapse against the measure, or the reason why there is no curve.
     pub collapse: Result<Measured, FitError>,
-    /// Regression of the peak drift ratio of the top on the measure, for stacks that stood.
+    /// Regression of the peak drift ratio at the top of the stack on the measure, for stacks that did not collapse.
+    /// `None` if there are fewer than three such stacks of known drift, or if all have the same
+    /// intensity.
     pub drift: Option<Demanded>,
 }
 
-/// Compares all measures. They are sorted by the likelihood of the observed outcomes under their fitted curves, the
-/// largest first.
+/// Evaluates every intensity measure as a predictor of collapse and drift.
+///
+/// The rows are sorted by the likelihood of the observed outcomes under the fitted curve of the measure, the largest
+/// first. Measures without a curve come last.
 pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
     let by_name = |name: &str| cases.measures.iter().position(|measure| measure.name == name);
     let mut rows: Vec<MeasureRow> = (0..cases.measures.len())

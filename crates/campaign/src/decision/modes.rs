@@ -10,9 +10,9 @@ use super::curve::{LEVEL, LimitCurve, stripe};
 pub struct ModeIncidence {
     /// Name of the mode.
     pub mode: String,
-    /// Number of cases and of collapses in this mode, for each level or bin.
+    /// Numbers of cases and of collapses in this mode, for each level or bin of intensity.
     pub stripes: Vec<Stripe>,
-    /// Wilson score interval of each fraction.
+    /// Wilson score interval of the fraction of cases that collapse in this mode, for each element of `stripes`.
     pub intervals: Vec<Interval>,
     /// Probability of collapse in this mode, at each intensity of [`LimitCurve::grid`].
     ///

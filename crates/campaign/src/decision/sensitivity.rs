@@ -11,8 +11,8 @@ use crate::study::{Column, Provenance, Value};
 
 /// Group of cases in which a factor has the same value.
 ///
-/// If a factor has many different numbers as values, the cases are sorted by the value and divided into three groups of
-/// equal size instead.
+/// If a numeric factor has more than six different values, the cases are instead sorted by value and divided into three
+/// groups of equal size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     /// Value or range of values, for display.
@@ -70,7 +70,7 @@ impl Effect {
     }
 }
 
-/// Maximum number of values of a factor for which each value is a separate group.
+/// Maximum number of different values of a numeric factor for which each value forms a group of its own.
 const MOST: usize = 6;
 
 /// Returns the effects of all factors that vary, the largest first.

@@ -51,7 +51,8 @@ pub(crate) fn left_out(lost: usize, runs: usize) -> Option<String> {
 /// Returns a sentence on stacks that fall under their own weight, followed by a space; empty if there are no such
 /// stacks.
 ///
-/// `fallen` is the number of these stacks, `of` is the total number, and `what` is what is counted, such as "runs".
+/// `fallen` is the number of these stacks and `of` is the total number. `what` is the noun that follows the numbers,
+/// such as "runs".
 pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
     let (falls, they) = match fallen {
         0 => return String::new(),

@@ -40,7 +40,8 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
     blocks
 }
 
-/// Tabulates the simulated shares for high stacks next to the shares observed at Napa.
+/// Tabulates the shares of collapsed stacks and fallen barrels in simulations of high stacks, next to those observed
+/// at Napa.
 fn observations(all: &Heights) -> Table {
     let mut table = Table::new(
         format!(

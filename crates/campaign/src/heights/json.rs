@@ -1,4 +1,4 @@
-//! JSON document of a study of heights, in SI units.
+//! JSON document of a study of safe heights, in SI units.
 
 use barrelstack::variants::{Fitted, Unknown};
 use barrelstack_fragility::Stripe;

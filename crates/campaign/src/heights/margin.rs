@@ -1,4 +1,4 @@
-//! Static margins: the largest steady horizontal acceleration that a stack bears, found by tilting the floor.
+//! Static margins: the largest steady horizontal acceleration that a stack withstands, found by tilting the floor.
 
 use std::ops::ControlFlow;
 

@@ -87,7 +87,7 @@ fn named(velocity: f64) -> String {
 }
 
 /// Returns the results of stacks of `levels` levels at a given PGV (m/s), in the direction with the higher upper bound
-/// of the probability of collapse.
+/// of the probability of collapse; `None` if no run has a verdict.
 fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
     let directions = all.request.directions().into_iter();
     directions
@@ -107,7 +107,7 @@ fn rating(at: &AtLevel) -> Rating {
 }
 
 /// Returns the largest number of levels that is rated low at a given PGV (m/s), provided that all smaller numbers are
-/// rated low as well.
+/// rated low as well; `None` if not even [`LOWEST`] levels are rated low.
 fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
     all.request
         .heights()
@@ -176,8 +176,9 @@ fn inserted(direction: Direction) -> String {
     }
 }
 
-/// Returns the results of stacks of `levels` levels at a given PGV (m/s), in the direction in which the range over the
-/// uncertain constants of the seats has the higher upper end; `None` if a direction has no such range.
+/// Returns the results of stacks of `levels` levels at a given PGV (m/s), with the range of the probability of collapse
+/// over the uncertain constants of the seats. The results are those in the direction in which this range has the higher
+/// upper end. Returns `None` if the range is unknown in a direction.
 fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel, [f64; 2])> {
     let found = |direction| {
         let height = all.of(levels, direction)?;
@@ -192,7 +193,8 @@ fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel
 /// Returns the largest number of levels with a low risk at a given PGV (m/s), allowing for the uncertain constants.
 ///
 /// The risk is low if the upper end of the 95 % range of the probability of collapse does not exceed the limit for the
-/// rating "low". The risk must be low for all smaller numbers of levels as well.
+/// rating "low". The risk must be low for all smaller numbers of levels as well. Returns `None` if the risk of
+/// [`LOWEST`] levels is not low or is unknown.
 fn highest_over_constants(all: &Heights, velocity: f64) -> Option<u32> {
     let low =
         |levels: &u32| widest(all, *levels, velocity).is_some_and(|(.., range)| range[1] <= LOW.1);

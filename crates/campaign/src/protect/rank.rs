@@ -44,14 +44,16 @@ pub(super) struct Runs {
     pub(super) fallen_at_rest: usize,
     /// Drawn constants, motion, intensity and verdict of each run, from which the effect of the constants is estimated.
     sample: Sample,
-    /// For each level, the number of runs that collapse and the total number of barrels that fall in these runs.
+    /// For each level, the number of runs in which the stack collapses, and the total number of barrels that fall in
+    /// these runs.
     collapses: Vec<(f64, f64)>,
 }
 
 /// Effect of the uncertain constants on a stack.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Over {
-    /// Range that contains, with a probability of 95 %, the probability of collapse or the annual rate of collapse.
+    /// Range that contains, with a probability of 95 %, the probability of collapse or the annual rate of collapse;
+    /// `None` if unknown.
     pub(super) range: Option<[f64; 2]>,
     /// Number of barrels that fall, for every draw of the uncertain constants and the regression coefficients; empty if
     /// unknown.
@@ -108,9 +110,10 @@ impl Runs {
 
     /// Returns the effect of the uncertain constants. The results at the levels (m/s) are weighted and added.
     ///
-    /// The regression gives the share of collapses at each level. The number of barrels that fall in a collapse does
-    /// not depend on the constants: it is the mean over all collapses at that level or, if nothing collapses there,
-    /// over all levels.
+    /// For each draw of the constants, the regression gives the share of collapses at each level. This share is
+    /// multiplied by the number of barrels that fall in a collapse, which is assumed not to depend on the constants. It
+    /// is the mean over all collapses at that level or, if no stack collapses there, over the collapses at all levels.
+    /// If no stack collapses at any level, it is `most`, the largest possible number.
     pub(super) fn over_constants(&self, levels: &[f64], weights: &[f64], most: f64) -> Over {
         let certain =
             self.sample.is_certain().then(|| self.estimate(|run| run.collapsed, weights, 1.0));

@@ -1,4 +1,5 @@
-//! Candidates of a ranking. A candidate is a stack with a protection; each round runs studies of it in every direction.
+//! Candidates of a ranking. A candidate is a stack with a protection. In each round, one study of a candidate is run
+//! for each direction of shaking.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;

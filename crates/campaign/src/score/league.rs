@@ -137,8 +137,8 @@ fn reason(error: &ScoreError) -> String {
 
 impl League {
     /// Returns the share of the draws of the uncertain constants in which the score of a row is higher than that of the
-    /// next row. A draw has the same constants in all rows. Returns `None` for the last row, or if the scores in the
-    /// draws are unknown.
+    /// next row. Draws with the same index have the same constants in all rows. Returns `None` for the last row, or if
+    /// the scores in the draws are unknown.
     pub fn better_than_next(&self, row: usize) -> Option<f64> {
         let [own, next] = [self.rows.get(row)?, self.rows.get(row + 1)?].map(|(_, s)| s.draws());
         (!own.is_empty() && own.len() == next.len()).then(|| share_less(&next, &own))
