@@ -101,9 +101,9 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     Arc::new(drawn(run, sight, STEPS))
 }
 
-/// Returns the drawing of a run in the view across the barrels, in a form that makes a smaller file. The
-/// three-dimensional scene is the same as that of [`scene`], but the flat drawings of rotating bodies change in coarser
-/// steps.
+/// Returns the drawing of a run in the view across the barrels, for smaller files. The three-dimensional scene is the
+/// same as that of [`scene`], but a rotating body has fewer flat drawings, because its view directions are rounded to
+/// coarser steps.
 pub fn coarse_scene(run: &Run) -> Scene {
     drawn(run, Sight::Across, COARSE_STEPS)
 }
@@ -167,8 +167,9 @@ fn drawn(run: &Run, sight: Sight, steps: f64) -> Scene {
     }
 }
 
-/// Adds a drawing of a body for every view direction that occurs along its path, and the poses of the body in all
-/// frames. View directions are rounded to `steps` steps per right angle.
+/// Adds a body to a flat scene. `drawn` receives one drawing for every view direction that occurs along the path of the
+/// body. `poses` receives one pose per drawing and frame; it is NaN in the frames that do not show the drawing. View
+/// directions are rounded to `steps` steps per right angle.
 fn enter(
     (part, body): (&Part, &Body<Spatial>),
     path: impl Iterator<Item = [f64; 7]>,
@@ -282,7 +283,7 @@ fn top(run: &Run) -> impl Iterator<Item = usize> {
         .filter(move |body| levels > 0 && run.stack.parts[*body].level == levels)
 }
 
-/// Returns the paths of the centers of the top-level barrels, as traces in a scene of the run.
+/// Returns the paths of the centers of the barrels of the top level, as traces in a scene of the run.
 pub fn traces(run: &Run, scene: &Scene) -> Vec<Trace> {
     let first = scene.bodies.len() - top(run).count();
     let trace = |(at, body): (usize, usize)| Trace {
@@ -302,7 +303,8 @@ struct Band<'a> {
 }
 
 impl Band<'_> {
-    /// Returns the positions of the ends of the band on the page.
+    /// Returns the poses of the two ends of the band on the page: the positions (m) to the right and up, and a rotation
+    /// of zero. `page` contains the axes that point right and up.
     fn ends(&self, run: &Run, frame: usize, page: [Vec3; 2]) -> [[f64; 3]; 2] {
         [0, 1].map(|end| {
             let (place, rotation) = placed(run.frames.poses[frame][self.link.bodies[end]]);
@@ -362,7 +364,8 @@ fn placed([x, y, z, w, a, b, c]: [f64; 7]) -> (Vec3, Rotation3) {
     (Vec3::new(x, y, z), Quaternion { w, v: Vec3::new(a, b, c) }.matrix())
 }
 
-/// Returns the slope (rad) of the ground, rising to the right.
+/// Returns the slope angle (rad) of the ground in the view across the barrels; positive if the ground rises to the
+/// right.
 fn slope(run: &Run) -> f64 {
     match &run.scenario.scene {
         scenario::Scene::Spatial(scene) => scene.ground.slope,

@@ -34,11 +34,12 @@ pub fn files(answer: &Answer, resolved: &str, language: Language) -> Vec<(String
     files
 }
 
-/// Writes the selected renderings of the run that the results show. The animation and the frames are drawn in the view
-/// in which the first body leaves its seat. If no body leaves its seat, they are drawn in the view across the barrels.
+/// Writes the selected renderings of the run that is shown in detail. The animation and the frames are drawn in the
+/// view in which the first body leaves its seat. If no body leaves its seat, they are drawn in the view across the
+/// barrels.
 ///
 /// # Errors
-/// When a file cannot be written.
+/// If a file cannot be written.
 pub fn render(
     answer: &Answer,
     folder: &RenderFolder,

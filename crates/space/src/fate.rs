@@ -64,17 +64,20 @@ impl Heading {
 pub struct Fate {
     /// Position at rest (m), relative to the ground.
     pub rest: Vec3,
-    /// Time (s), kind and direction of the loss of seat.
+    /// Time (s), kind and direction of the loss of seat; `None` if the body has not lost its seat.
     pub left_seat: Option<(f64, Loss, Heading)>,
-    /// Time (s) at which the drop of the body reached the threshold that counts as a fall.
+    /// Time (s) at which the drop of the body exceeded the threshold that counts as a fall; `None` if the body has not
+    /// fallen.
     pub fell_at: Option<f64>,
-    /// Largest drop (m) below the position at rest.
+    /// Largest drop (m) below the position at rest, over the whole run.
     pub drop: f64,
-    /// Largest force (N) on the body after its fall.
+    /// Largest force (N) on the body, without gravity, from the time at which it counts as fallen, including
+    /// its impact.
     pub fall_force: f64,
     /// Displacement (m) from the position at rest, relative to the ground, in the last observed state.
     pub moved: Vec3,
-    /// The same displacement (m) at the time of the collapse, or at the end of the run if there is no collapse.
+    /// Displacement (m) from the position at rest, relative to the ground, at the time of the collapse; in the last
+    /// observed state if there is no collapse.
     pub moved_at_collapse: Vec3,
     /// Mean slip (m) across and along the barrels at the end of the run: the displacement relative to each support,
     /// averaged over the supports.
@@ -129,9 +132,9 @@ pub struct Fates {
     /// For every body, its rotation in the current state.
     turned: Vec<Rotation3>,
     all: Vec<Fate>,
-    /// Time (s) of the first loss of seat, and the body that lost its seat.
+    /// Time (s) of the first loss of seat, and the body that lost its seat; `None` if no body has lost its seat.
     collapse: Option<(f64, BodyId)>,
-    /// Time (s) at which the first barrel counted as fallen.
+    /// Time (s) at which the first barrel counted as fallen; `None` if no barrel has fallen.
     first_fall: Option<f64>,
 }
 
@@ -158,12 +161,13 @@ impl Fates {
         &self.all
     }
 
-    /// Returns the time (s) of the first loss of seat, and the body that lost its seat.
+    /// Returns the time (s) of the first loss of seat, and the body that lost its seat; `None` if no body has lost its
+    /// seat.
     pub fn collapse(&self) -> Option<(f64, BodyId)> {
         self.collapse
     }
 
-    /// Returns the time (s) at which the first barrel counted as fallen.
+    /// Returns the time (s) at which the first barrel counted as fallen; `None` if no barrel has fallen.
     pub fn first_fall(&self) -> Option<f64> {
         self.first_fall
     }

@@ -78,7 +78,7 @@ fn is_unbounded(body: &Body<Spatial>) -> bool {
 }
 
 /// Returns the index of the interface between two bodies, and a flag that is `true` if the interface names the second
-/// body first.
+/// body first; `None` if no interface applies to the two bodies.
 fn law_of(scene: &SpatialScene, [one, other]: [BodyId; 2]) -> Option<(usize, bool)> {
     let label = |id: BodyId| match id.checked_sub(1) {
         Some(at) => (scene.bodies[at].kind(), scene.bodies[at].group.as_deref()),

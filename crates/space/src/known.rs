@@ -1,5 +1,5 @@
-//! Check that all features of a stack are supported in three dimensions. The error for an unsupported feature names the
-//! field of the feature.
+//! Check that all features of a stack are supported in three dimensions. The error for an unsupported feature contains
+//! the path of its field in the scenario.
 
 use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
 use barrelstack::scenario::{Basis, Fill, RackKind, Scenario, SeatContact, StackSpec};

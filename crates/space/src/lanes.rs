@@ -83,7 +83,7 @@ struct Batch<'a> {
     group: &'a [Ready],
     report: &'a mut dyn FnMut(usize, Case),
     stop: &'a dyn Fn() -> bool,
-    /// Index of the next case of the group.
+    /// Index, in `group`, of the case that the next free lane takes.
     next: usize,
     lanes: Vec<Option<Lane<'a>>>,
     /// Number of steps since the last call of `stop`.

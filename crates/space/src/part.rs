@@ -19,7 +19,8 @@ pub struct Part {
     pub column: u32,
     /// Row, 1 for the row nearest to the viewer; racks and barrels are counted separately.
     pub row: u32,
-    /// For a barrel, the rack that carries it; for a rack on isolators, its platform; for a tuned mass, its rack.
+    /// For a barrel, the rack that carries it; for a rack on isolators, its platform; for a tuned mass, its rack;
+    /// `None` for all other bodies.
     pub carrier: Option<BodyId>,
     /// For a rack above the first level, the barrels on which it lies.
     pub supports: Vec<BodyId>,

@@ -152,7 +152,7 @@ impl Tube {
     }
 }
 
-/// Returns the orientation of a body whose axis lies along the barrels.
+/// Returns the orientation of a body whose `x` axis points along the barrels, toward positive `y` of the stack.
 pub(crate) fn along_barrels() -> Quaternion {
     Quaternion::turn(Vec3::new(0.0, 0.0, FRAC_PI_2))
 }

@@ -148,7 +148,8 @@ fn numbers(run: &Run, summary: &Summary) -> Block {
     Block::Table(numbers)
 }
 
-/// Returns the section for engineers, which is collapsed by default.
+/// Returns a section for engineers with the energy balance, the inputs, and what is not modeled. The section is
+/// collapsed by default.
 fn for_engineers(answer: &Answer) -> Block {
     let mut blocks = Vec::new();
     if let Some(balance) = &answer.summary.energy {
@@ -297,7 +298,8 @@ fn fates(run: &Run) -> Table {
     )
 }
 
-/// Returns the final state and the largest displacements of the bodies of a free scene.
+/// Returns a table with the displacements and speeds of the bodies of a free scene at the end of the run, and their
+/// largest displacements.
 fn ends(summary: &Summary) -> Table {
     let measured = |value: f64| Cell::Measured(value, 4);
     let length = |[x, y, z]: [f64; 3]| measured((x * x + y * y + z * z).sqrt());

@@ -18,8 +18,8 @@ pub type Motions<'a> = (&'a [Pose<Spatial>], &'a [Twist<Spatial>]);
 #[derive(Clone, Debug)]
 pub struct Rest {
     stack: Arc<Stack>,
-    /// Times (s) from which a standing stack (`still_from`) and a collapsed stack (`calm_from`) may be at rest. Both
-    /// are infinite if the run must last for its full duration.
+    /// Times (s) before which the stack always counts as moving: `still_from` while it stands, and `calm_from` after a
+    /// collapse. Both are infinite if the run must last for its full duration.
     still_from: f64,
     calm_from: f64,
     /// Kinetic energy per unit mass (m²/s²) below which a body counts as at rest.

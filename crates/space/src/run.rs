@@ -59,11 +59,11 @@ pub struct Run {
     pub ground: Ground,
     /// The outcome.
     pub outcome: Outcome,
-    /// The direction in which the first body left its seat.
+    /// Direction in which the first body left its seat; `None` if no body left its seat.
     pub heading: Option<Heading>,
     /// Outcomes of all bodies, in the order of the parts.
     pub fates: Vec<Fate>,
-    /// Time (s) at which the first barrel counted as fallen.
+    /// Time (s) at which the first barrel counted as fallen; `None` if no barrel has fallen.
     pub first_fall: Option<f64>,
     /// Outcomes of all elements of the devices, in the order of the elements in the model.
     pub elements: Vec<ElementFate>,
@@ -79,7 +79,7 @@ pub struct Run {
     pub settled: Option<Settled>,
     /// Integration settings.
     pub simulation: barrelstack_dynamics::Simulation,
-    /// Numbers of steps and evaluations.
+    /// Numbers of steps, force evaluations and tested contact elements.
     pub work: Work,
     /// Time (s) at which the run ended.
     pub end_time: f64,

@@ -54,7 +54,7 @@ struct Pair {
 }
 
 impl Seats {
-    /// Creates the recorder with the forces at rest.
+    /// Creates the recorder for a stack at rest. `scratch` contains the forces at the current time `time` (s).
     pub fn new(stack: &Stack, time: f64, scratch: &Scratch<Spatial>) -> Self {
         let below = stack.parts.iter();
         let below = below.map(|part| leans_on(part.kind, part.carrier, &part.supports));

@@ -49,7 +49,7 @@ pub struct Simulation {
     scratch: Scratch<Spatial>,
     stepper: Stepper<Spatial>,
     watch: Watch,
-    /// The numerical failure that ended the run.
+    /// The numerical failure that ended the run; `None` if no step has failed.
     failure: Option<RunError>,
 }
 
@@ -61,7 +61,7 @@ pub(crate) struct Fixed {
     pub(crate) stack: Arc<Stack>,
     settled: Option<Settled>,
     pub(crate) settings: barrelstack_dynamics::Simulation,
-    /// Number of evaluations and number of tested contact elements before the run, while the stack settled.
+    /// Numbers of force evaluations and of tested contact elements while the stack settled, before the run.
     before: (u64, u64),
 }
 
@@ -276,7 +276,7 @@ impl Simulation {
         &self.state
     }
 
-    /// Returns the forces, contacts and loads in the current state.
+    /// Returns the contacts, the forces on the bodies, and the loads of the force elements in the current state.
     pub fn scratch(&self) -> &Scratch<Spatial> {
         &self.scratch
     }

@@ -21,7 +21,7 @@ use crate::rack::Heights;
 pub struct Stack {
     /// The model.
     pub model: Model<Spatial>,
-    /// Description of every body, in the order of the body IDs; the ground comes first.
+    /// Descriptions of all bodies, in the order of the body IDs; the ground comes first.
     pub parts: Vec<Part>,
     /// Time step (s), divided during impacts; for a stack, the smallest of the steps of its plane models across and
     /// along the barrels.
@@ -39,7 +39,7 @@ pub struct Stack {
     pub stave_capacity: f64,
     /// Force elements of devices that will be attached when the stack is at rest.
     pub(crate) loose: Vec<Loose>,
-    /// Description of the device to which each element of the model belongs.
+    /// For each force element of the model, the description of its device.
     pub(crate) devices: Vec<&'static Words>,
 }
 
@@ -147,7 +147,8 @@ struct Pace {
     depths: BTreeMap<String, f64>,
     /// [`Substepping::resting_allowance`]: the smallest value of all plane models.
     resting_allowance: f64,
-    /// Reach (m) of a rack on the barrels below, across and along the barrels.
+    /// Displacements (m) of a rack, across and along the barrels below, beyond which these barrels no longer support
+    /// the rack.
     reach: [f64; 2],
 }
 

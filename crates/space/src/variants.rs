@@ -54,7 +54,7 @@ pub struct Answer {
 }
 
 impl Case {
-    /// Creates the result of a run.
+    /// Extracts the result of a case from its run.
     pub fn of(run: &Run) -> Self {
         let sound = !matches!(run.outcome, Outcome::Invalid { .. });
         let barrels: Vec<usize> = run.stack.of_kind(PartKind::Barrel).collect();
@@ -362,8 +362,8 @@ pub fn answer(
     answered(scenario, choice, None, observer)
 }
 
-/// Returns the same result as [`answer`]. `known` contains the cases of the scenario as stated and of all its variants,
-/// if these were already run.
+/// Returns the same result as [`answer`]. If the scenario as stated and all its variants were already run, `known`
+/// contains their results, and only the run that is shown in detail is repeated.
 pub(crate) fn answered(
     scenario: &Scenario,
     choice: RunChoice,

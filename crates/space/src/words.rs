@@ -55,7 +55,7 @@ pub fn tone(run: &Run, summary: &Summary) -> Tone {
     }
 }
 
-/// Returns the words for a direction, such as "across the barrels, to the right".
+/// Describes a direction, such as "across the barrels, to the right".
 pub fn toward(heading: Heading) -> &'static str {
     match heading {
         Heading::Right => "across the barrels, to the right",
@@ -65,7 +65,7 @@ pub fn toward(heading: Heading) -> &'static str {
     }
 }
 
-/// Returns the words for a loss of seat, such as "B3.1 leaves its cradle".
+/// Describes a loss of seat, such as "B3.1 leaves its cradle".
 pub(crate) fn leaves(name: &str, loss: Loss) -> String {
     match loss {
         Loss::Displaced => format!("{name} leaves its cradle"),
@@ -75,7 +75,8 @@ pub(crate) fn leaves(name: &str, loss: Loss) -> String {
     }
 }
 
-/// Returns the sentences that follow the headline and support it.
+/// Returns the sentences that follow the headline: the statistics of the variants, the first loss of seat, and the
+/// outcomes of the devices.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     let mut sentences: Vec<String> = summary.ensemble.iter().filter_map(measure).collect();
     if let Some(directions) = &summary.directions {

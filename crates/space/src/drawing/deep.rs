@@ -101,8 +101,8 @@ fn point(of: Vec3) -> Point3 {
     [of.x, of.y, of.z]
 }
 
-/// Returns a body with its solids. Half-spaces are left out because the picture has a floor of its own; dishes are left
-/// out because they lie in the floor.
+/// Converts a body to a body of the three-dimensional scene. Half-spaces are left out because the scene has a floor of
+/// its own; dishes are left out because they lie in the floor.
 fn drawn(part: &Part, body: &Body<Spatial>) -> DepthBody {
     let mut volumes: Vec<Volume> = Vec::new();
     let mut barrel = false;

@@ -1,4 +1,5 @@
-//! Builder of a stack: collects its bodies, contact laws and force elements, all scaled by similitude.
+//! Builder of a stack: collects its bodies, contact laws and force elements, all scaled to the length scale of the
+//! stack.
 
 use barrelstack_dynamics::{
     Body, BodyId, ContactPair, Element, Interface, Nodes, Planar, Pose, Shape, Vec2,
@@ -156,7 +157,8 @@ impl<'a> Builder<'a> {
         self.bodies.len() - 1
     }
 
-    /// Returns the name, mass (kg) and offset (m) of a rack, with the overrides of the scenario applied.
+    /// Returns the name and mass (kg) of a rack, and its displacement (m) from its regular position, positive to the
+    /// right in a stack that is not mirrored. The overrides of the scenario are applied.
     pub(super) fn rack_at(&self, level: u32, column: u32) -> (String, f64, f64) {
         let mut mass = self.spec.rack.mass;
         let mut offset = 0.0;

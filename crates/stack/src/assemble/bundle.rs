@@ -100,8 +100,9 @@ impl Bundle {
 
     /// Returns the friction law of the bundle.
     ///
-    /// Seats that form a wedge press on the barrel with a total normal force above its weight. The friction coefficient
-    /// is therefore divided by the cosine. The tangential stiffness and damping are the sums over all seats.
+    /// The normal forces of seats that form a wedge add up to the load on the wedge divided by the cosine. The friction
+    /// coefficient is therefore divided by the cosine. The tangential stiffness and damping are the sums over all
+    /// seats.
     pub(super) fn friction(self, friction: Friction) -> Friction {
         if self.cosine == 1.0 {
             return friction;

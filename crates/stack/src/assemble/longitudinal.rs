@@ -16,7 +16,7 @@ use super::transverse::TUBE_CORNER;
 use super::{AssembleError, PartKind, posts};
 use crate::scenario::{Basis, Posts, Rack, RackKind, SeatContact, StackSpec};
 
-/// Radius (m) of the rounding of a barrel's chime: an assumption.
+/// Radius (m) to which the chime of a barrel is rounded. The value is an assumption.
 pub const CHIME_RADIUS: f64 = 0.01;
 
 /// Cosine of the largest angle (73°) between contact normal and face normal at which the nodes of a rail's face carry

@@ -75,13 +75,14 @@ pub struct Part {
     pub name: String,
     /// Kind of the body.
     pub kind: PartKind,
-    /// Level, 1 at the bottom; `None` in a free scene.
+    /// Level, 1 at the bottom; `None` for a body that belongs to no level, and for all bodies of a free scene.
     pub level: Option<u32>,
     /// Column, 1 at the left: the number of a barrel among the barrels of its level, or the number of a rack among the
-    /// racks of its level. A device under or on a rack has the column of the rack.
+    /// racks of its level. A device under or on a rack has the column of the rack. `None` for the ground and for the
+    /// bodies of a free scene.
     pub column: Option<u32>,
     /// Body that carries this body: the rack that carries a barrel or a tuned mass, the barrel that contains wine, or
-    /// the platform under a rack.
+    /// the platform under a rack; `None` for all other bodies.
     pub carrier: Option<BodyId>,
     /// Bodies on which a rack above the first level stands; empty for all other bodies.
     pub supports: Vec<BodyId>,
@@ -135,7 +136,7 @@ pub struct Assembly {
     pub(crate) loose: Vec<Loose>,
     /// Time step (s) that the contacts require; during impacts, the step is divided further.
     pub step: f64,
-    /// Description of the device of each force element, in the order of the model.
+    /// For each force element of the model, the description of its device.
     pub devices: Vec<&'static Words>,
     /// Height (m) of the stack from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,
