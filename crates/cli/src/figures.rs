@@ -16,7 +16,7 @@ pub(crate) struct FigureArgs {
 }
 
 impl FigureArgs {
-    /// `true` if any format was requested by name.
+    /// Returns `true` if any format was requested by name.
     pub(crate) fn names_any(&self) -> bool {
         !self.format.is_empty()
     }

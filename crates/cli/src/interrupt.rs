@@ -81,7 +81,7 @@ pub(crate) fn stop_at(point: Option<StopPoint>) {
     let _ = STOP_POINT.set(point);
 }
 
-/// Installs the signal handler of the program; `json` is `true` if a document is printed.
+/// Installs the signal handler of the program; `json` is `true` if the command prints a JSON document.
 ///
 /// The first signal requests a stop. Work that does not listen, or does not react in time, is
 /// terminated; work that stops gets time to keep its finished results. A second signal terminates
@@ -93,7 +93,7 @@ pub(crate) fn watch(json: bool) {
     drop(ctrlc::set_handler(request_stop));
 }
 
-/// `true` if a document is printed.
+/// `true` if the command prints a JSON document.
 static JSON: AtomicBool = AtomicBool::new(false);
 
 /// Handles a signal.
@@ -133,13 +133,13 @@ fn end(json: bool) -> ! {
     std::process::exit(i32::from(STATUS))
 }
 
-/// `true` if work was stopped before its end.
+/// Returns `true` if work was stopped before its end.
 pub(crate) fn has_stopped() -> bool {
     STOPPED.load(Ordering::Relaxed)
 }
 
-/// Records that all work is finished and that its results are being written. A first signal then
-/// leaves the time [`KEEPING`] to write them.
+/// Records that all work is finished and that its results are being written. If a first signal arrives
+/// from now on, [`KEEPING`] is the time that remains to write them.
 pub(crate) fn finished() {
     FINISHED.store(true, Ordering::Relaxed);
 }
@@ -183,7 +183,7 @@ impl Interrupt {
         Self
     }
 
-    /// `true` if the user requested a stop.
+    /// Returns `true` if the user requested a stop; the work then counts as stopped.
     #[expect(clippy::unused_self, reason = "callers must listen first")]
     pub(crate) fn is_requested(&self) -> bool {
         let requested = REQUESTED.load(Ordering::Relaxed);
@@ -205,7 +205,7 @@ impl Interrupt {
         }
     }
 
-    /// Returns `Break` if a stop was requested.
+    /// Returns `Break` if a stop was requested; otherwise, `Continue`.
     pub(crate) fn flow(&self) -> ControlFlow<()> {
         if self.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }

@@ -12,7 +12,7 @@ pub(crate) struct LanesArgs {
     pub(crate) lanes: Option<Width>,
 }
 
-/// Parses the name of a vector unit that this machine has.
+/// Parses the name of a vector unit; an error if this machine does not have the unit.
 fn here(name: &str) -> Result<Width, String> {
     Width::named(name).filter(|width| width.is_here()).ok_or_else(|| {
         let here = Width::ALL.into_iter().filter(|width| width.is_here()).map(Width::name);

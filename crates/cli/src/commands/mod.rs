@@ -137,8 +137,8 @@ fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
     anyhow::anyhow!("there is no file {name:?} and no built-in scenario of that name; {next}")
 }
 
-/// Returns the exit status of a run, as listed in the help: failure if the computation is `broken`, and there is no
-/// verdict. The status of interrupted work is set in `main`.
+/// Returns the exit status of a run, as listed in the help: failure if the run is `broken`, which means that the
+/// computation failed and there is no verdict. The status of interrupted work is set in `main`.
 fn status(broken: bool) -> ExitCode {
     if broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }

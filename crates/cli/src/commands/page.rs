@@ -30,7 +30,8 @@ pub(super) struct PageArgs {
 }
 
 impl PageArgs {
-    /// Checks that the folder is writable, and sets the message that is printed if the program is stopped.
+    /// Checks that the folder is writable, and sets the message that is printed if the program is stopped. Returns the
+    /// options for the runs, and the progress display.
     pub(super) fn begin(&self, out: &Path) -> anyhow::Result<(RunOptions, Progress)> {
         writable(out)?;
         keeps(format!(

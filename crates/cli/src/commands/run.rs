@@ -20,7 +20,8 @@ use crate::comparison::Command;
 use crate::printer;
 use crate::progress::Progress;
 
-/// Maximum size (bytes) of the HTML page that contains the program and is to be embedded in the report.
+/// Maximum size (bytes) of the HTML page that is embedded in the report. The page contains the version of the program
+/// that runs in the browser.
 const PAGE_LIMIT: usize = 64 << 20;
 
 /// Runs the scenario and prints and writes the result.
@@ -93,8 +94,8 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     Ok(status(&answer))
 }
 
-/// Reads the HTML page that contains the program and is to be embedded in the report; an error if the page does not
-/// contain the program.
+/// Reads the HTML page that is embedded in the report; an error if the page does not contain the version of the
+/// program that runs in the browser.
 fn engine(path: &Path) -> anyhow::Result<String> {
     let page = system::read(path, PAGE_LIMIT)
         .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is not text".to_owned()))
@@ -165,7 +166,7 @@ pub(super) fn remedied(
     Ok(())
 }
 
-/// Returns the exit status of a run, as listed in the help.
+/// Returns the exit status of a run: failure if the computation failed, otherwise success.
 pub(super) fn status(answer: &AnyAnswer) -> ExitCode {
     super::status(answer.is_invalid())
 }

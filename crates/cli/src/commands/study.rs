@@ -340,7 +340,7 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Converts an error of a study; a canceled study is reported as stopped work.
+/// Converts the error of a study; the error of a canceled study becomes [`Stopped`].
 fn stopped(error: StudyError) -> anyhow::Error {
     if let StudyError::Stopped = error { Stopped.into() } else { error.into() }
 }

@@ -187,8 +187,8 @@ impl Input {
         Ok(options)
     }
 
-    /// Reads one file; if the file is in counts and its sensitivity is missing, searches the
-    /// `StationXML` files in the same folder.
+    /// Reads one file. If the samples are in counts and the sensitivity of the instrument is missing, the
+    /// sensitivity is taken from the `StationXML` files in the same folder.
     fn read_one(&self, file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
         let first = read_file(file, options);
         let lacking = first.as_ref().is_err_and(|error| {
@@ -238,7 +238,8 @@ impl Input {
         self.unite(&self.read_each()?)
     }
 
-    /// Combines several records into one.
+    /// Combines several records into one. They are overlapping parts of one long record if `join` is set,
+    /// otherwise components of the same record.
     pub(super) fn unite(&self, records: &[Record]) -> anyhow::Result<Record> {
         if self.join {
             return Ok(Record::join(records)?);
@@ -300,7 +301,7 @@ impl Choice {
     }
 }
 
-/// Returns the file names of a record without folders, joined by commas.
+/// Returns the names of the files of a record, without their folders, joined by commas.
 fn base_names(record: &Record) -> String {
     let names: Vec<&str> = record
         .file

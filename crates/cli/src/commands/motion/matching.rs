@@ -133,7 +133,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
 enum Part {
     /// The channel with this index.
     One(usize),
-    /// Both horizontals, over all directions.
+    /// Both horizontal components together, by their spectrum over all directions.
     Pair(Horizontals),
 }
 
@@ -176,7 +176,8 @@ impl Part {
         }
     }
 
-    /// Returns the pseudo-acceleration (m/s²) at a period (s).
+    /// Returns the pseudo-acceleration (m/s²) of this part of a record at a period (s); for both horizontal components,
+    /// the median or the largest value over all directions.
     fn response(&self, record: &Record, period: f64, damping: f64) -> anyhow::Result<f64> {
         match self {
             Self::One(place) => {

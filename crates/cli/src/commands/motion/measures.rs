@@ -61,7 +61,7 @@ pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
 }
 
 /// Returns the customary unit of a quantity, the number of these units in one SI unit, and the name
-/// of the peak of the quantity.
+/// of the peak of the quantity, such as "PGA".
 pub(super) fn peak_reading(quantity: Quantity) -> (&'static str, f64, &'static str) {
     match quantity {
         Quantity::Acceleration => ("g", 1.0 / STANDARD_GRAVITY, "PGA"),

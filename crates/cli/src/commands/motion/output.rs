@@ -37,7 +37,7 @@ pub(super) enum Form {
     At2,
 }
 
-/// A motion file that has been checked for writing.
+/// Path and format of a motion file. The path has been checked: a file may be written there.
 #[derive(Debug)]
 pub(super) struct Target {
     pub(super) path: PathBuf,
@@ -54,7 +54,8 @@ impl Form {
 }
 
 impl Output {
-    /// Checks the output file before the computation starts.
+    /// Determines the format from the extension, and checks that the file may be written. This is done before the
+    /// computation starts.
     pub(super) fn prepare(&self) -> anyhow::Result<Target> {
         let ending = self.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let form = match ending.as_str() {

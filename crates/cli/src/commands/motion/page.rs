@@ -24,12 +24,12 @@ pub(super) struct PageText {
     pub(super) language: LanguageArgs,
 }
 
-/// Returns `true` if the path has the extension of a page.
+/// Returns `true` if the extension of a path is that of an HTML page.
 fn is_page(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"))
 }
 
-/// Returns an error if neither a page nor a picture can be written to a path. Without a path, there is no error.
+/// Returns an error if a path is given, but neither an HTML page nor a picture can be written to it.
 pub(super) fn vacant_figure(path: Option<&Path>, overwrite: bool) -> anyhow::Result<()> {
     let Some(path) = path else { return Ok(()) };
     if is_page(path) { vacant(path, overwrite) } else { panels::vacant_picture(path, overwrite) }
@@ -37,7 +37,7 @@ pub(super) fn vacant_figure(path: Option<&Path>, overwrite: bool) -> anyhow::Res
 
 /// Writes the panels of a record before and after a change, and prints the path.
 ///
-/// If the path has the extension of a page, the panels are written as a page with text, otherwise as a picture.
+/// If the extension of the path is `.html`, the panels are written as a page with text, otherwise as a picture.
 pub(super) fn write(
     path: &Path,
     figure: &Figure,
@@ -93,7 +93,7 @@ fn document(panels: &Panels, after: &Record, text: PageText) -> Document {
     }
 }
 
-/// Returns an interactive figure of a plot. The identifier of the figure consists of `id`, a hyphen and `at` + 1.
+/// Converts a plot to an interactive figure. The identifier of the figure consists of `id`, a hyphen and `at` + 1.
 fn live(id: &str, at: usize, plot: &Plot) -> Block {
     let what = match plot.y.label.split_once(": ") {
         Some((channel, quantity)) => format!("{quantity} of {channel}"),

@@ -1,4 +1,4 @@
-//! Figures of whole records, also before and after processing: every component with its peaks,
+//! Figures of a record, or of a record before and after processing: every component with its peaks,
 //! Husid plots, and spectra.
 
 use std::path::Path;

@@ -154,7 +154,7 @@ fn formats(args: &PlotArgs) -> Vec<Format> {
     format_of(&args.output).map_or_else(|| args.formats.formats(), |format| vec![format])
 }
 
-/// Returns the extensions of the files of each figure.
+/// Returns the extensions of the files that are written for each figure: those of its formats, and that of CSV.
 fn endings(args: &PlotArgs) -> impl Iterator<Item = &'static str> {
     formats(args).into_iter().map(Format::extension).chain(["csv"])
 }
@@ -238,7 +238,8 @@ fn title(record: &Record) -> String {
     if parts.is_empty() { record.file.clone() } else { parts.join(", ") }
 }
 
-/// Returns the interval from 5 to 95 % of the Arias intensity, labeled with the channel.
+/// Returns the time interval in which the Arias intensity grows from 5 to 95 % of its final value, labeled with the
+/// name of the channel. Returns `None` if the accelerations are all zero.
 fn strong_part(channel: &Channel) -> Option<Band> {
     let build_up = husid(&channel.acceleration);
     let time = |share: f64| {

@@ -173,7 +173,8 @@ impl ProcessArgs {
         Ok(chain)
     }
 
-    /// Returns the selected and rotated record, before and after processing.
+    /// Returns the record before and after processing. Both have only the selected components, which are rotated if
+    /// requested.
     fn both(&self, read: &Record) -> anyhow::Result<(Record, Record)> {
         let choice = input::Choice { component: self.component.clone(), processing: None };
         let mut before = choice.take(read, Chain::None)?;
@@ -200,8 +201,7 @@ impl ProcessArgs {
     }
 }
 
-/// Applies the chain to every channel, with corner frequencies that the noise of the record
-/// determines.
+/// Applies the chain to every channel, with corner frequencies derived from the noise of the channel.
 fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
     let criterion = NoiseCriterion::default();
     let mut after = before.clone();

@@ -68,7 +68,8 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
     super::change::finish(&target, &read, &after, table.lines())
 }
 
-/// Returns the scale factor, and the name of the component that determines the factor.
+/// Returns the scale factor, and the name of the component (or the names of the two components) that the requested
+/// value of the measure refers to.
 fn factor_to(
     args: &ScaleArgs,
     record: &Record,

@@ -10,7 +10,7 @@ use barrelstack_report::described;
 
 use crate::printer::counted;
 
-/// Formats a probability with its interval, in percent.
+/// Formats a probability and its confidence interval, in percent.
 fn percent((p, [low, high]): (f64, [f64; 2])) -> String {
     // Rounding may leave a bound slightly below zero.
     let shown = |share: f64| 100.0 * share.max(0.0);
@@ -24,17 +24,17 @@ pub(crate) struct Answer {
     endings: Endings,
     modes: BTreeMap<String, usize>,
     errors: BTreeMap<String, usize>,
-    /// Levels of the cases, with counts by outcome. At most `MOST` + 1 levels are kept, which suffices to detect that
-    /// there are more than `MOST`.
+    /// Intensity levels of the motions, with the numbers of cases by outcome. At most `MOST` + 1 levels are kept, which
+    /// suffices to detect that there are more than `MOST`.
     levels: Vec<(f64, Tally)>,
     unit: String,
 }
 
-/// Maximum number of different levels, collapse modes or errors that are counted individually.
+/// Maximum number of different intensity levels, collapse modes or errors that are counted individually.
 const MOST: usize = 30;
 
 impl Answer {
-    /// Adds the rows of a table.
+    /// Adds the rows of a table to the counts.
     pub(super) fn add(&mut self, table: &StudyTable) {
         self.tally = self.tally.plus(Tally::of(table));
         self.endings.add(table);
@@ -64,10 +64,10 @@ impl Answer {
         }
     }
 
-    /// Returns the levels with their counts by outcome, in ascending order.
+    /// Returns the intensity levels in ascending order, with the numbers of cases by outcome.
     ///
-    /// The list is empty if there is only one level or more than `MOST`, or if there are fewer than two cases per
-    /// level on average, as for levels that are drawn at random.
+    /// The list is empty if there is only one level or more than `MOST`. It is also empty if there are fewer than two
+    /// cases per level on average, for example because the levels are drawn at random.
     fn levels(&self) -> Vec<(f64, Tally)> {
         let mut levels = self.levels.clone();
         levels.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -30,7 +30,7 @@ pub(super) struct Live {
 /// process holds its chunk indefinitely.
 pub(super) struct Waiting {
     folder: PathBuf,
-    /// The chunk, the start of the wait, and `true` if the wait was reported.
+    /// The chunk, the start of the wait, and `true` if the wait was reported; `None` before the first wait.
     state: Mutex<Option<(usize, Instant, bool)>>,
 }
 
@@ -43,7 +43,8 @@ impl Waiting {
         Self { folder: folder.to_owned(), state: Mutex::new(None) }
     }
 
-    /// Takes the chunk for which this process waits, and reports its holder once the wait exceeds `PATIENCE`.
+    /// Continues the wait for a chunk, or starts it if the chunk is a new one. When the wait exceeds `PATIENCE`, a
+    /// warning names the process that holds the chunk.
     ///
     /// `None` changes nothing. This function is called many times per second.
     pub(super) fn at(&self, chunk: Option<usize>) {
@@ -104,7 +105,7 @@ impl Live {
         self.healed.load(Ordering::Relaxed)
     }
 
-    /// Shows the progress.
+    /// Shows the progress, and returns `Break` if the user requested a stop.
     pub(super) fn at(&self, progress: &Progress) -> ControlFlow<()> {
         self.damaged.store(progress.damaged, Ordering::Relaxed);
         self.healed.store(progress.manifest_healed, Ordering::Relaxed);

@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::commands::motion::input;
 
-/// Result of one record: its row, if any, and the files that were refused.
+/// Outcome of processing one record: its row of the table, if any, and the files that were refused.
 #[derive(Debug)]
 pub(super) struct JournalEntry {
     pub(super) record: String,
@@ -26,7 +26,7 @@ pub(super) struct JournalEntry {
 }
 
 /// The journal file. Only the positions of the lines are kept in memory, because the lines
-/// themselves may be too long to keep.
+/// themselves may take too much memory.
 pub(super) struct Journal {
     path: PathBuf,
     specs: Vec<ColumnSpec>,
@@ -35,7 +35,7 @@ pub(super) struct Journal {
 
 struct Inner {
     file: File,
-    /// Number of bytes written.
+    /// Position (bytes) in the file at which the next line is written.
     length: u64,
     lines: BTreeMap<String, Line>,
 }
@@ -54,7 +54,8 @@ impl Inner {
     }
 }
 
-/// Fingerprint of the files of a record, `true` if the record was measured, and the position (bytes) of its last line.
+/// What the journal states about a record: the fingerprint of the files of the record, `true` if the record was
+/// measured, and the position (bytes) of the last journal line about the record.
 #[derive(Clone, Copy)]
 struct Line {
     hash: u64,
@@ -65,7 +66,7 @@ struct Line {
 impl Journal {
     /// Opens the journal of a folder, or creates it.
     ///
-    /// If the last line is incomplete, as after a killed process, its record counts as unfinished.
+    /// If the last line is incomplete, as left by a killed process, its record counts as unfinished.
     pub(super) fn open(out: &Path, settings: &str, specs: &[ColumnSpec]) -> anyhow::Result<Self> {
         let path = out.join("rows.jsonl");
         let cannot = |what: &str| format!("cannot {what} {}", path.display());
@@ -204,8 +205,8 @@ fn seal(line: &serde_json::Value) -> String {
     format!("{:016x}", fnv1a(line.to_string().as_bytes()))
 }
 
-/// Parses a value of the type of a column; the outer `None` means that the value has a different
-/// type.
+/// Parses a value of the type of a column. Returns `Some(None)` for an empty cell, and `None` if the value has a
+/// different type.
 #[expect(clippy::option_option, reason = "a missing value is not the same as a wrong value")]
 fn cell(value: &serde_json::Value, kind: ValueKind) -> Option<Option<Value>> {
     if value.is_null() {

@@ -57,7 +57,7 @@ pub(super) struct FolderArgs {
 }
 
 impl FolderArgs {
-    /// Returns the periods (s) of the table.
+    /// Returns the periods (s) of the spectra in the table, in ascending order.
     fn periods(&self) -> anyhow::Result<Vec<f64>> {
         if self.periods.is_empty() {
             return Ok(PERIODS.to_vec());
@@ -73,17 +73,17 @@ impl FolderArgs {
     }
 }
 
-/// Processing of all records in given folders.
+/// A batch that processes all records in given folders.
 pub(super) struct Batch<'a> {
-    /// Files and folders.
+    /// Files and folders to read, and the options for reading them.
     pub(super) input: &'a Input,
     /// Folder for all output.
     pub(super) out: &'a Path,
-    /// Options for folders: flatfile and periods.
+    /// Options that apply to folders of records: the flatfile and the periods.
     pub(super) folder: &'a FolderArgs,
     /// Settings that affect the rows, as text; an existing table is continued only if its settings are the same.
     pub(super) settings: String,
-    /// Periods (s) of the spectra; replaces the periods of the options.
+    /// Periods (s) of the spectra; `None` for the periods of the folder options.
     pub(super) periods: Option<Vec<f64>>,
     /// Extension of the output file of each record; a record whose output file is missing is
     /// processed again.
@@ -137,7 +137,7 @@ pub(super) struct Measurements {
     tables: TableArgs,
 }
 
-/// Result of one record.
+/// Outcome of processing one record.
 enum Done {
     /// The record is in the journal.
     Noted,
@@ -278,8 +278,8 @@ impl Measurements {
     }
 }
 
-/// Returns a fingerprint of the contents of all files of a record. A file that cannot be read contributes a zero in
-/// place of its own fingerprint.
+/// Returns a fingerprint of the contents of all files of a record. A file that cannot be read counts as a file with
+/// the fingerprint zero.
 fn fingerprint_of(source: &Source) -> u64 {
     let mut all = Vec::new();
     for path in source.paths() {
@@ -349,7 +349,7 @@ fn flatfile(path: &Path) -> anyhow::Result<(Flatfile, u64)> {
     Ok((Flatfile::parse(&path.display().to_string(), &text)?, fnv1a(&bytes)))
 }
 
-/// Returns the stage of a record, and a description of the processing that is applied to a raw record before it is
+/// Returns the processing stage of a record, and a description of the processing that is applied before the record is
 /// measured.
 fn stage_of(worked: &Worked) -> (String, &'static str) {
     let processing = match (worked.record.stage, worked.before.is_none()) {

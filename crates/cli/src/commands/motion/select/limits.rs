@@ -4,7 +4,8 @@ use std::str::FromStr;
 
 use barrelstack_campaign::study::StudyTable;
 
-/// A range; if a limit is left out, the range is open at that end.
+/// A range that includes both limits. If the lower limit is left out, it is zero; if the upper limit is left out, the
+/// range is unbounded above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
     from: f64,

@@ -9,7 +9,7 @@ use barrelstack_selection::{Chosen, Selection, SelectionTarget};
 use super::SelectArgs;
 use crate::store::store;
 
-/// A selected set, with the table of candidates.
+/// A selected set of records, with the table of all records.
 pub(super) struct Set<'a> {
     pub(super) args: &'a SelectArgs,
     pub(super) table: &'a StudyTable,
@@ -24,13 +24,13 @@ impl Set<'_> {
         self.selection.chosen.iter().map(|chosen| (self.rows[chosen.candidate], chosen))
     }
 
-    /// Returns the text in a cell of the table of candidates; empty if there is none.
+    /// Returns the text in a cell of the table of records; empty if there is none.
     pub(super) fn text(&self, column: &str, row: usize) -> &str {
         let texts = self.table.texts(column).unwrap_or_default();
         texts.get(row).and_then(Option::as_deref).unwrap_or_default()
     }
 
-    /// Returns the number in a cell of the table of candidates; `None` if there is none.
+    /// Returns the number in a cell of the table of records; `None` if there is none.
     pub(super) fn number(&self, column: &str, row: usize) -> Option<f64> {
         self.table.numbers(column)?.get(row).copied().flatten()
     }

@@ -10,7 +10,7 @@ use super::SelectArgs;
 use crate::commands::motion::input::{number_or, quantity};
 use crate::commands::motion::target as code;
 
-/// Returns the target within the requested periods.
+/// Returns the target spectrum, limited to the requested range of periods.
 pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
     let shortest = quantity("--shortest", &args.shortest, Dimension::TIME)?;
     let longest = quantity("--longest", &args.longest, Dimension::TIME)?;
