@@ -39,7 +39,7 @@ const DRAWS: usize = 20_000;
 /// Mean likelihood of a statement below which a warning is given; 1 is the highest possible likelihood.
 const UNLIKELY: f64 = 0.05;
 
-/// Scenario of all stacks that have the same number of levels, under the motion of the earthquake.
+/// Scenario that represents all stacks with a given number of levels. Its motion is that of the earthquake.
 #[derive(Clone, Debug)]
 pub struct Height {
     /// Number of levels.
@@ -323,9 +323,10 @@ fn deviates(point: &[f64], motion: f64, height: Option<&f64>) -> Vec<f64> {
 
 /// Parameter sets, weighted by the likelihood of the statements.
 struct Weighed {
-    /// Parameter sets with their weights. The last coordinate of a set is the random deviate of the motion.
+    /// Parameter sets with their weights. The last coordinate of a set is the logarithm of the factor by which the
+    /// motion is multiplied, in standard deviations.
     posterior: Posterior,
-    /// For each statement, the share that the model predicts with every parameter set.
+    /// For each statement, the shares that the model predicts, one for each parameter set.
     shares: Vec<Vec<f64>>,
     /// Mean likelihood of each statement over all parameter sets; at most 1.
     likelihoods: Vec<f64>,

@@ -153,7 +153,7 @@ fn stiffness(law: &Interface) -> Option<f64> {
     (law.basis != Basis::Length).then_some(stiffness)
 }
 
-/// Returns the name of the unit to which the constants of a contact law apply: a seat or a node.
+/// Returns "seat" or "node", whichever the constants of a contact law apply to.
 fn basis(law: &Interface) -> &'static str {
     if law.basis == Basis::Seat { "seat" } else { "node" }
 }

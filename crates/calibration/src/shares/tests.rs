@@ -12,7 +12,7 @@ fn chance(point: &[f64], motion: f64, levels: usize) -> f64 {
     normal(0.2 - 1.8 * point[0] + 0.5 * point[1] + 0.6 * motion + 0.7 * (levels as f64 - 5.0))
 }
 
-/// Returns a [`Height`] for each number of levels; its scenario is not simulated.
+/// Returns a [`Height`] for each number of levels. All have the same scenario, which is not simulated.
 fn heights(levels: &[usize]) -> Vec<Height> {
     let scenario = Scenario::builtin("demo-napa", &[]).unwrap();
     levels.iter().map(|&levels| Height { levels, scenario: scenario.clone() }).collect()

@@ -107,7 +107,8 @@ pub struct JudgedCase {
     pub barrels: u32,
     /// Height of fall (m) of every barrel that fell.
     pub falls: Box<[f64]>,
-    /// Largest force (N) on each fallen barrel after it fell; `None` if the study does not record forces.
+    /// Largest force (N) on each fallen barrel from the time at which it counts as fallen, including the impact on
+    /// landing. `None` if the study does not record forces, or if the stack fell under its own weight.
     pub forces: Option<Box<[f64]>>,
     /// Volume of wine (m³) in each fallen barrel.
     pub wines: Box<[f64]>,
@@ -115,7 +116,7 @@ pub struct JudgedCase {
     pub wine: f64,
     /// Peak drift ratio of the top of the stack before any loss of seat; NaN if unknown.
     drift: f64,
-    /// Intensity (SI) of the case in each measure of [`Cases::measures`]; NaN if unknown.
+    /// Intensities (SI) of the case, one for each measure in [`Cases::measures`]; NaN if unknown.
     intensities: Box<[f64]>,
     /// Index of the curve to which the case belongs.
     ///
@@ -176,10 +177,11 @@ pub struct Cases {
     pub endings: Endings,
     /// All cases. They are reference-counted, since there may be a million of them, and subsets share them.
     pub all: Vec<Arc<JudgedCase>>,
-    /// Number of rows without a verdict, because the run failed, could not start, or gave a result that is
-    /// not judged.
+    /// Number of rows without a verdict: the case could not start, its run failed or was interrupted, or it has no
+    /// seats that could be lost.
     pub left_out: usize,
-    /// Seed of the random resampling.
+    /// Seed of the study. The data sets that are simulated for [`LimitCurve::monotony`](super::LimitCurve::monotony)
+    /// are drawn with this seed.
     pub seed: u64,
 }
 
@@ -270,7 +272,7 @@ impl Reading {
         })
     }
 
-    /// Adds the next rows.
+    /// Converts the next rows to cases, and adds those that have a verdict.
     pub(super) fn add(&mut self, table: &StudyTable) -> Result<(), DecisionError> {
         let text = |name| table.texts(name).ok_or(DecisionError::Column(name));
         let (outcomes, records, ended) = (text("outcome")?, text("record")?, text("ended")?);
@@ -420,7 +422,7 @@ impl Cases {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
-    /// Returns the noun that sentences use for the curves: "motions" if each motion has a single curve, otherwise a
+    /// Returns the phrase that reports use for the curves: "motions" if each motion has a single curve, otherwise a
     /// longer phrase.
     pub fn curves_are(&self) -> &'static str {
         if self.curves() == self.records.len() {
@@ -430,13 +432,12 @@ impl Cases {
         }
     }
 
-    /// Returns `true` if the numbers of fallen barrels are known, that is, if almost every case was simulated until
-    /// nothing moved.
+    /// Returns `true` if losses are reported, that is, if almost every case was simulated until nothing moved.
     pub fn has_losses(&self) -> bool {
         self.endings.no_losses().is_none()
     }
 
-    /// Returns the cases whose falls are known.
+    /// Returns a copy that contains only the cases that were simulated until nothing moved.
     #[must_use]
     pub fn with_known_falls(&self) -> Self {
         self.only(|case| case.followed)

@@ -19,7 +19,7 @@ pub(super) const LEVEL: f64 = 0.95;
 /// Number of simulated data sets in the test of whether failure becomes likelier with intensity.
 const DRAWS: usize = 500;
 
-/// Method of a confidence band.
+/// Method by which a confidence band is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BandKind {
     /// Jackknife over records, since the cases of one record may be correlated.
@@ -48,16 +48,16 @@ pub struct LimitCurve {
     pub grid: Vec<f64>,
     /// 95 % confidence band at each intensity of `grid`; empty if there is no curve or no band.
     pub band: Vec<Interval>,
-    /// 95 % interval of the median intensity.
+    /// 95 % interval of the median of the fitted curve; `None` if the interval cannot be computed.
     pub median: Option<Interval>,
     /// Method by which the confidence band was computed.
     pub band_kind: BandKind,
     /// Curves fitted with one record left out, for each record in turn. The uncertainty of derived results is computed
-    /// from these curves.
+    /// from these curves. `None` if the jackknife fails ([`leave_one_out`]).
     pub left_out: Option<LeaveOneOut>,
-    /// Goodness of fit of the fitted curve to the raw counts.
+    /// Goodness of fit of the fitted curve to the raw counts; `None` if there is no fitted curve.
     pub goodness: Option<Goodness>,
-    /// Test of the assumption that failure becomes likelier with intensity.
+    /// Result of the test of the assumption that failure becomes likelier with intensity.
     pub monotony: Monotony,
     /// Curves (each of one motion) on which the stack failed at one intensity and stood at a higher one.
     ///

@@ -84,7 +84,8 @@ pub struct LimitRate {
     pub limit: LimitState,
     /// Rate (1/year) from the fitted curve; `None` if there is no curve.
     pub fitted: Option<Rate>,
-    /// 95 % interval of the rate from the fitted curve. It covers the uncertainty of the curve only.
+    /// 95 % interval of the rate from the fitted curve. It covers the uncertainty of the curve only. `None` if
+    /// [`LimitCurve::left_out`] is `None`.
     pub interval: Option<Interval>,
     /// Rate (1/year) from the raw fractions.
     pub raw: Rate,
@@ -96,11 +97,11 @@ pub struct LimitRate {
 /// Expected annual losses of one stack.
 #[derive(Clone, Debug)]
 pub struct Lost {
-    /// Barrels that fall (1/year).
+    /// Number of barrels that fall per year.
     pub fallen: Rate,
-    /// Barrels that burst (1/year), under the low, central and high assumptions about breakage.
+    /// Number of barrels that burst per year, under the low, central and high assumptions about breakage.
     pub burst: [Rate; 3],
-    /// Wine that is lost (m³/year), under the low, central and high assumptions about breakage.
+    /// Volume of wine lost per year (m³/year), under the low, central and high assumptions about breakage.
     pub wine: [f64; 3],
     /// Lower and upper cost (US$/year) of the barrels that burst and of their wine, under the central assumption about
     /// breakage.

@@ -114,7 +114,7 @@ pub fn read_shards<E: From<StudyError>>(
 
 /// Writes the rows of a study into its folder, as `table.csv`, `table.parquet`, `columns.csv` and `provenance.json`.
 ///
-/// Meanwhile `visit` receives the rows, as in [`read_shards`].
+/// While the rows are written, `visit` receives them as in [`read_shards`].
 ///
 /// # Errors
 /// As for [`read_shards`], or if a file cannot be written.

@@ -1,4 +1,4 @@
-//! Designs of studies: rules by which the list of cases follows from motions, levels and factors.
+//! Designs of studies: rules that determine the list of cases from the motions, levels and factors.
 
 use barrelstack_fragility::sobol::Axis;
 use barrelstack_fragility::{normal, normal_quantile};
@@ -63,7 +63,8 @@ impl Design {
     /// Returns `true` if the cases are a sample of the stated distributions, so that the share of collapsed cases
     /// estimates the probability of collapse.
     ///
-    /// Returns `false` if levels are requested, or if cases differ from each other in a single quantity.
+    /// Returns `false` for all other designs: their cases combine listed values or requested levels, or are
+    /// constructed so that some of them differ in one quantity only.
     pub fn is_sample(&self) -> bool {
         matches!(self, Self::LatinHypercube { .. } | Self::Sobol { .. } | Self::MonteCarlo { .. })
     }
@@ -99,13 +100,13 @@ pub(super) struct PlannedCase {
     pub(super) settings: Vec<Option<Setting>>,
 }
 
-/// Enumeration of the cases of a design: combinations of lists, or samples.
+/// Method by which the cases of a design are enumerated: all combinations, changes of one factor at a time, or samples.
 #[derive(Clone, Debug)]
 pub(super) enum Cases {
     /// Every combination. The motion varies slowest, then the factors, and the level varies fastest.
     Crossed,
-    /// Cases with the base values, and cases with a single change of the base values. The motion varies slowest, then
-    /// the draw, then the level, and the change varies fastest.
+    /// Cases with the base values, and cases in which only one factor differs from its base value. The motion varies
+    /// slowest, then the draw, then the level, and the change varies fastest.
     OneAtATime {
         /// Changes, each given by the index of a factor and the new value of that factor.
         changes: Vec<(usize, Setting)>,
@@ -292,8 +293,8 @@ fn one_at_a_time(
     PlannedCase { number, id: study.identity(motion, level, &settings), motion, level, settings }
 }
 
-/// Returns every single change from the base values: each factor with each of its other values. Factors that
-/// are drawn are excluded if `drawn` is `true`.
+/// Returns all changes of one factor from its base value, each given by the index of the factor and its new value.
+/// Factors with a distribution are excluded if `drawn` is `true`.
 fn changes(factors: &[Factor], quantiles: &[f64], drawn: bool) -> Vec<(usize, Setting)> {
     let mut changes = Vec::new();
     for (index, factor) in factors.iter().enumerate() {

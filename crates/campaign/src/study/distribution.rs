@@ -14,11 +14,11 @@ use super::setting::{Domain, Setting};
 pub struct Distribution {
     shape: Shape,
     domain: Domain,
-    /// Place in the study file where the distribution is stated.
+    /// Place in the study file where the distribution is defined.
     origin: Origin,
 }
 
-/// Shape of a distribution, in SI units.
+/// Shape of a distribution with its parameters, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 enum Shape {
     Uniform {

@@ -19,21 +19,20 @@ use crate::watch::{Ending, after_collapse};
 pub struct Endings {
     /// Total number of cases with a verdict.
     pub judged: u64,
-    /// Number of cases that were simulated until nothing moved. By then the ground was still; after a
-    /// collapse, an acceleration of the ground of at most 0.02 g was allowed.
+    /// Number of cases that were simulated until nothing moved and the ground was still. After a collapse, or if only
+    /// the verdict is requested, calm ground is sufficient: its acceleration remains at most 0.02 g.
     ///
     /// Includes cases whose stack fell under its own weight, before any shaking.
     pub followed: u64,
-    /// Number of cases that were stopped a fixed time after their collapse, because the study states such a
-    /// time.
+    /// Number of cases that were stopped at a fixed time after their collapse, as the study specifies.
     pub stopped: u64,
-    /// Number of cases that ended at the duration that the study states.
+    /// Number of cases that ended because the duration of the run was over.
     pub short: u64,
-    /// Number of cases that ended at the stated duration while the ground still moved.
+    /// Number of the cases in `short` in which the ground still moved at the end.
     pub cut: u64,
-    /// Number of cases that ended at the stated duration while the ground still moved and the stack still stood.
+    /// Number of the cases in `cut` in which the stack still stood at the end.
     pub open: u64,
-    /// Longest part (s) of a motion that was not run because it lies after the stated duration.
+    /// Longest part (s) of a motion that was not run, over the cases in `cut`.
     pub longest_cut: f64,
     /// Number of cases in which something still moved at the time limit of the study.
     pub moving: u64,

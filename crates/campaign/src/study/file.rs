@@ -32,7 +32,8 @@ const MOST_CASES: u64 = 10_000_000;
 /// bytes.
 const MOST_STRATA: usize = 50_000_000;
 
-/// Size of chunks in a study with few cases per chunk, because each case or each hunt takes a long time.
+/// Default chunk size of three-dimensional studies and incremental dynamic analyses. It is small, because each case or
+/// each hunt takes a long time.
 const FEW: Sizes = Sizes::Given(8);
 
 impl Study {
@@ -411,8 +412,8 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
     Ok(Intensity { measure, levels })
 }
 
-/// Reads the `[design]` table, and checks that `intensity` suits the design. Returns the design, the size of chunks if
-/// it is stated, and `intensity`, which is unchanged.
+/// Reads the `[design]` table, and checks that `intensity` suits the design. Returns the design, the chunk size if
+/// the table specifies it, and `intensity`, which is unchanged.
 fn read_design(
     reader: Reader<'_>,
     intensity: Option<Intensity>,

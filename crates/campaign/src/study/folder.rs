@@ -97,7 +97,7 @@ described! {
 }
 
 impl Provenance {
-    /// `true` if cases are samples: motion, level and factors are drawn for each case.
+    /// Returns `true` if cases are samples: motion, level and factors are drawn for each case.
     pub fn is_sampled(&self) -> bool {
         self.is_sample() || self.design == "saltelli"
     }
@@ -215,7 +215,7 @@ impl Folder {
         write_whole(&copy, study.text.as_bytes())
     }
 
-    /// `true` if the folder still belongs to the study for which it was opened.
+    /// Returns `true` if the folder still belongs to the study for which it was opened.
     fn is_ours(&self) -> Result<bool, StudyError> {
         Ok(manifest_of(&self.path)?.study_hash == self.study)
     }

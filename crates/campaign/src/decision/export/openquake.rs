@@ -211,8 +211,8 @@ impl Ratios {
     }
 }
 
-/// Returns a vulnerability function as XML. `loss` is the name of the kind of loss in `OpenQuake`, and
-/// `ratio` returns the share that is lost in a case.
+/// Returns a vulnerability function as XML. `loss` is the loss category in `OpenQuake`, `words` describes the loss
+/// ratio, and `ratio` returns the loss ratio of a case.
 fn vulnerability(
     decision: &Decision,
     foreign: &Foreign,

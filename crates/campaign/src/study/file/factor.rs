@@ -41,7 +41,7 @@ pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Optio
 }
 
 /// Limits on the number of factor values and on the number of cases of a study. They are checked before any value is
-/// tested, so that a study that is too large takes neither memory nor time.
+/// tested, so that a study that is too large is rejected before it takes time or memory.
 #[derive(Debug)]
 pub(super) struct Room {
     /// Number of values that may still be listed.
