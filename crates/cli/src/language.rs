@@ -23,7 +23,7 @@ typed! {
 }
 
 impl LanguageArgs {
-    /// Returns the language.
+    /// Returns the selected language.
     pub(crate) fn of(self) -> Language {
         self.language.into()
     }

@@ -231,7 +231,7 @@ pub(crate) fn verification(found: &barrelstack::verify::Verification) -> anyhow:
     lines(["", "verification"].map(str::to_owned).into_iter().chain(aligned(&rows)))
 }
 
-/// Returns pairs of name and value as lines, with the values aligned in a column.
+/// Formats pairs of name and value as lines, with the values aligned in a column.
 fn aligned(rows: &[(String, String)]) -> impl Iterator<Item = String> {
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0) + 2;
     rows.iter().map(move |(name, value)| format!("  {name:width$}{value}"))

@@ -42,7 +42,7 @@ pub(crate) struct Progress {
 pub(crate) struct Bar(pub(crate) Option<ProgressBar>);
 
 impl Bar {
-    /// Creates the bar if the output is a terminal.
+    /// Creates the bar with `make` if `show` is `true` and standard error is a terminal.
     pub(crate) fn new(show: bool, make: impl FnOnce() -> ProgressBar) -> Self {
         Self((show && std::io::stderr().is_terminal()).then(make))
     }
@@ -75,7 +75,7 @@ impl Progress {
         self.report(time, end_time, Of::One, || format!("{time:.1} of {end_time:.1} s simulated"))
     }
 
-    /// Reports the number of finished things and their total number.
+    /// Reports that `done` of `of` items are finished. `things` is the noun for the items, such as "runs".
     pub(crate) fn counted(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.interrupt.reached(things, done as f64);
         self.report(done as f64, of as f64, Of::Many, || format!("{done} of {of} {things}"))
@@ -94,13 +94,14 @@ impl Progress {
         }
     }
 
-    /// Reports the number of finished things in a part of the work, which other parts may follow.
+    /// Reports that `done` of `of` items are finished in a part of the work, which other parts may follow. `things` is
+    /// the noun for the items.
     pub(crate) fn counted_of_part(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.lines.part();
         self.counted(done, of, things)
     }
 
-    /// Prints a separate line, if progress is shown.
+    /// Prints a line that remains on the terminal, if progress is shown.
     fn said(&self, line: &str) -> ControlFlow<()> {
         if let Some(bar) = &self.bar.0 {
             bar.println(line);
@@ -110,7 +111,7 @@ impl Progress {
         self.interrupt.flow()
     }
 
-    /// Reports the number of attempts in a search of unknown length.
+    /// Reports the number of attempts in a search of unknown length. `things` is the noun for the attempts.
     pub(crate) fn searched(&self, done: u64, things: &str) -> ControlFlow<()> {
         let words = || format!("{done} {things}");
         if let Some(bar) = &self.bar.0 {
@@ -203,14 +204,16 @@ pub(crate) struct Lines {
 struct LastLine {
     /// Time of the last line.
     last: Instant,
-    /// `true` if an estimate of the total time was printed or is not possible.
+    /// `true` if no estimate of the total time will be printed, because it was printed before or the total time is
+    /// unknown.
     whole: bool,
-    /// Time at which this work, or this part of it, started, and the amount that was finished at
-    /// that time. That amount comes from an earlier run, so it is excluded from the estimate.
+    /// Time at which this work, or this part of it, started; the amount that was finished at that time; and the value
+    /// of `Work::now()` at that time. The finished amount comes from an earlier run, so it is excluded from the
+    /// estimate. `None` before the first report.
     start: Option<(Instant, f64, Work)>,
-    /// Amount that was finished at the last report.
+    /// Amount of work that was finished at the last report.
     done: f64,
-    /// Total amount at the last report.
+    /// Total amount of work at the last report.
     of: f64,
 }
 
@@ -239,8 +242,8 @@ impl Lines {
         }
     }
 
-    /// Reports that the amount `done` of the total `of` is finished. If it is time for a line, prints an estimate of
-    /// the total time, or the text that `words` returns.
+    /// Reports that the amount `done` of the total `of` is finished. If a line is due, prints an estimate of the total
+    /// time, or the text that `words` returns with an estimate of the remaining time, if there is one.
     pub(crate) fn at(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) {
         let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) else { return };
         // If the amount decreases by more than half, the next part has started. A smaller decrease comes from another
@@ -308,9 +311,9 @@ mod tests {
         whole: f64,
     }
 
-    /// Returns runs that start in order, `width` of them side by side. Each run settles for `settling` (s), and is then
-    /// shaken for the first of its two `lengths` (s). The second is the time for which it would be shaken without a
-    /// collapse.
+    /// Returns the times of runs that start in the order of `lengths`, at most `width` of them at the same time. Each
+    /// run settles for `settling` (s), and is then shaken for the first of its two `lengths` (s). The second length is
+    /// the time for which it would be shaken without a collapse.
     fn side_by_side(width: usize, settling: f64, lengths: &[[f64; 2]]) -> Vec<Timed> {
         let mut free = vec![0.0_f64; width];
         let run = |[length, whole]: &[f64; 2]| {
@@ -322,8 +325,8 @@ mod tests {
         lengths.iter().map(run).collect()
     }
 
-    /// Returns the time (s) of the first estimate, and the total time (s) that it predicts. `known` states whether the
-    /// simulated time of the runs is known.
+    /// Returns the time (s) of the first estimate, and the total time (s) that it predicts; `None` if there is no
+    /// estimate before the last run ends. `known` states whether the simulated time of the runs is known.
     fn first(runs: &[Timed], known: bool) -> Option<(f64, f64)> {
         let all = runs.iter().map(|run| run.end).fold(0.0, f64::max);
         let times = (1..).map(|tenth| 0.1 * f64::from(tenth));
@@ -349,8 +352,8 @@ mod tests {
         })
     }
 
-    /// Runs that stand take their full time, and runs that collapse take a part of it; time is
-    /// simulated, so that the test does not depend on a clock.
+    /// Runs without a collapse take their full time, and runs with a collapse take a part of it. The elapsed time is
+    /// computed, so that the test does not depend on a clock.
     #[test]
     fn first_estimates_come_after_five_seconds_and_are_within_a_factor_of_two() {
         let mut state = 1_u64;

@@ -1,5 +1,4 @@
-//! Advice after an error: libraries state the fact, and the command line names the option that
-//! helps.
+//! Advice after an error: the error of a library states what is wrong, and this module adds the option that helps.
 
 use anyhow::Error;
 use barrelstack::RunFailure;

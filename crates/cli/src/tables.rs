@@ -8,7 +8,7 @@ use barrelstack_input::system;
 
 use crate::store::{store, store_all};
 
-/// Name of the workbook of a folder.
+/// File name of the workbook in a folder of tables.
 const WORKBOOK: &str = "tables.xlsx";
 /// Error message of a build that cannot write workbooks.
 const WITHOUT: &str = "this build of the command writes no workbooks; install it with `cargo install barrelstack --features xlsx`, \
@@ -30,7 +30,7 @@ pub(crate) struct TableArgs {
 }
 
 impl TableArgs {
-    /// Returns an error if an option is given without a folder of results.
+    /// Returns an error if one of these options is given, but no folder for the tables (`folder` is `false`).
     pub(crate) fn need(self, folder: bool) -> anyhow::Result<()> {
         let given = [(self.xlsx, "--xlsx"), (self.decimal_comma, "--decimal-comma")];
         match given.into_iter().find(|(given, _)| *given && !folder) {
@@ -114,7 +114,7 @@ fn workbook(files: &[(String, Vec<u8>)]) -> anyhow::Result<Vec<u8>> {
     })
 }
 
-/// Returns the bytes of a workbook.
+/// Returns the bytes of a workbook with one sheet for each table, given as the name of the sheet and CSV text.
 #[cfg(feature = "xlsx")]
 fn book(tables: &[(&str, &str)]) -> anyhow::Result<Vec<u8>> {
     Ok(spreadsheet::workbook(tables)?)
@@ -126,8 +126,8 @@ fn book(_: &[(&str, &str)]) -> anyhow::Result<Vec<u8>> {
     bail!("{WITHOUT}")
 }
 
-/// Returns the row of the provenance sheet that states the name, version and commit of this program, as a label and a
-/// text.
+/// Returns the rows of the provenance sheet that state the name, version and commit of this program, as pairs of label
+/// and value.
 fn facts() -> Vec<(String, String)> {
     let commit = env!("BARRELSTACK_COMMIT");
     let of = if commit.is_empty() { String::new() } else { format!(", commit {commit}") };

@@ -2,8 +2,8 @@
 
 use clap::ValueEnum;
 
-/// Declares an enum of the words that a command-line argument accepts, and its conversion to the
-/// type of the values for which the words stand. The doc comment of a variant is the help of its word.
+/// Declares an enum whose variants are the words that a command-line argument accepts, and the conversion of each
+/// variant to a value of the type after `of`. The doc comment of a variant is the help text of its word.
 macro_rules! typed {
     (
         $(#[$about:meta])*

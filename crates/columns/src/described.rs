@@ -9,8 +9,8 @@ use serde_json::{Map, Value, json};
 
 use crate::one_line;
 
-/// Schemas of all objects in a document, by the name of the object. An object may contain objects of
-/// its own type.
+/// Schemas of the objects in a document, by the names of the objects. Schemas refer to each other by these names, so an
+/// object may contain objects of its own type.
 pub type Objects = Map<String, Value>;
 
 /// A type that has a JSON Schema.
@@ -107,15 +107,15 @@ pub struct Field {
     pub unit: Option<&'static str>,
     /// Permitted values of a string field; empty if any string is permitted.
     pub words: &'static [&'static str],
-    /// Serialization attribute: `flatten` merges the fields of the value into the object, `skip`
-    /// omits the field.
+    /// Serialization attribute: `flatten` merges the fields of the value into the object, and `skip` omits the field.
+    /// `None` if the field is serialized under its key.
     pub how: Option<&'static str>,
     /// Function that returns the schema of the type of the field.
     pub schema: fn(&mut Objects) -> Value,
 }
 
-/// Adds the schema of an object under its name, unless this name is already present, and returns a
-/// reference to the schema.
+/// Adds the schema of an object to `objects` under its name, unless this name is already present. Returns a schema that
+/// refers to it (`$ref`).
 pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]) -> Value {
     let reference = json!({ "$ref": format!("#/$defs/{name}") });
     if objects.contains_key(name) {
@@ -165,7 +165,7 @@ fn resolved<'a>(schema: &'a Value, objects: &'a Objects) -> &'a Value {
     name.and_then(|name| objects.get(name)).unwrap_or(schema)
 }
 
-/// Returns the schema of a whole document with a title.
+/// Returns the JSON Schema of a document, including the schemas of its objects. `title` is the title of the schema.
 pub fn document<T: Described>(title: &str) -> Value {
     let mut objects = Objects::new();
     let mut schema = T::schema(&mut objects);

@@ -43,7 +43,8 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// Formats `value` with three significant digits and at most `decimals` decimals, so that no
 /// meaningless digit is shown.
 ///
-/// A value that rounds to zero is shown as less than one unit of the last place.
+/// If a value other than zero rounds to zero, a bound is shown instead: `<` and one unit of the last decimal, or `>`
+/// and minus one unit for a negative value.
 ///
 /// ```
 /// use barrelstack_columns::measured;

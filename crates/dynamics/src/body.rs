@@ -60,7 +60,8 @@ pub struct Round<S: Space> {
     /// `true` if normals exactly at the limit of an arc belong to this piece and not to its neighbor.
     pub takes_limit: bool,
     /// The straight sides adjacent to the ends of an arc, each given by its unit normal and its distance (m) from the
-    /// center of mass. A corner of another body that is nearer to such a side than to the arc touches the side.
+    /// center of mass; `None` for other pieces. A corner of another body that is nearer to such a side than to the arc
+    /// touches the side.
     pub sides: [Option<(S::Vector, S::Real)>; 2],
     /// Penetration (m) beyond which there is no contact. The center of an arc may lie far outside its body, so a
     /// surface behind the body may seem to penetrate the arc deeply.

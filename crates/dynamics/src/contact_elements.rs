@@ -54,14 +54,14 @@ const ASLEEP_SLACK: f64 = 2.0 * LOOKAHEAD_SLACK;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactElements<S: Space> {
     pub(crate) groups: Vec<Group>,
-    /// Index of every element's node in its node set.
+    /// For every element, the index of its node in the node set.
     pub(crate) nodes: Vec<u32>,
-    /// Position (m) of every element's node in the body frame of its contactor.
+    /// For every element, the position (m) of its node in the body frame of the contactor.
     pub(crate) positions: Vec<S::Vector>,
-    /// Factor by which the constants of every element's contact laws are multiplied: 1 for constants per node, the
-    /// tributary length (m) for constants per length.
+    /// For every element, the factor by which the constants of its contact laws are multiplied: the tributary length
+    /// (m) for constants per length, and 1 for constants per node or per seat.
     pub(crate) weights: Vec<S::Real>,
-    /// Contact history of every element.
+    /// For every element, its contact history.
     pub(crate) sticks: Vec<Stick<S>>,
     /// For every group, the smallest gap (m) of its elements when the list was built.
     apart: Vec<S::Real>,
@@ -70,8 +70,9 @@ pub struct ContactElements<S: Space> {
     travels: Vec<S::Real>,
     /// Poses of the bodies when the list was built.
     built_for: Vec<Pose<S>>,
-    /// Allowance (m) of every body: the displacement that is permitted before the list is rebuilt. The list contains
-    /// all elements whose gap, when the list was built, was at most the sum of the allowances of their two bodies.
+    /// For every body, its allowance (m): the displacement that is permitted before the list is rebuilt. The list
+    /// contains all elements whose gap, when the list was built, was at most the sum of the allowances of their two
+    /// bodies.
     allowances: Vec<f64>,
     /// `true` if the list contains all elements of the model.
     exhaustive: bool,
@@ -437,7 +438,7 @@ impl<S: Space> ContactElements<S> {
 
 /// A group of elements that is moved into another model.
 pub(crate) struct Moved {
-    /// Number of the pair in the new model.
+    /// Index of the pair in the new model.
     pair: usize,
     group: Group,
     nodes: Vec<u32>,
@@ -446,16 +447,16 @@ pub(crate) struct Moved {
 }
 
 impl Moved {
-    /// Returns the number of the pair in the new model.
+    /// Returns the index of the pair in the new model.
     pub(crate) fn pair(&self) -> usize {
         self.pair
     }
 }
 
 impl ContactElements<Spatial> {
-    /// Returns the groups whose pairs exist in a new model as well. `number_of` maps the number of a pair to its number
-    /// in the new model. `turn` rotates the displacements of the tangential springs and the slip rates into the frame
-    /// of the new model.
+    /// Returns the groups whose pairs exist in a new model as well. `number_of` maps the index of a pair to its index
+    /// in the new model, and returns `None` for a pair that does not exist there. `turn` rotates the displacements of
+    /// the tangential springs and the slip rates into the frame of the new model.
     pub(crate) fn moved(
         &self,
         slip_rates: &[Vec3],

@@ -40,7 +40,7 @@ pub enum FrictionLaw<R = f64> {
     Regularized {
         /// Friction coefficient `μ`.
         coefficient: R,
-        /// Slip rate `v_r` (m/s) at which 71 % of the friction is reached.
+        /// Slip rate `v_r` (m/s) at which the friction reaches 71 % (1/√2) of its limit `μ fₙ`.
         velocity: R,
     },
 }
@@ -69,8 +69,8 @@ pub struct Friction<S: Space> {
 impl<R: Real> FrictionLaw<R> {
     /// Returns the friction of a node that slips at `slip_rate` (m/s) under a normal force (N).
     ///
-    /// `weight` multiplies the tangential constants: 1 for constants per node, the tributary length
-    /// (m) for constants per length.
+    /// `weight` multiplies the tangential constants: the tributary length (m) for constants per length, and 1 for
+    /// constants per node or per seat.
     #[inline(always)]
     pub fn force<S: Space<Real = R>>(
         &self,

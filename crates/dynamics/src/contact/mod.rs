@@ -58,7 +58,8 @@ impl Basis {
 pub struct Rolling<R = f64> {
     /// Lever arm (m).
     pub lever: R,
-    /// Relative spin `ω₀` (rad/s) at which 71 % of the moment is reached.
+    /// Relative spin `ω₀` (rad/s) at which the moment reaches 71 % (1/√2) of its limit, the product of normal force and
+    /// lever arm.
     pub spin: R,
 }
 

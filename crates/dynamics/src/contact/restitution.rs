@@ -32,9 +32,10 @@ pub fn speed_gap(damping_ratio: f64) -> f64 {
 
 /// Returns the restitution of the Kelvin–Voigt law without tension at a damping ratio ζ ≥ 0.
 ///
-/// Contact ends when the force returns to zero, before the penetration does. For ζ < 1 this is at `ω_d t = 2 arccos ζ`,
-/// so `e = exp(−2 ζ arccos ζ / √(1 − ζ²))`, the square of the restitution of the speed-gap law. For ζ > 1, arcosh
-/// replaces arccos.
+/// Contact ends when the force returns to zero, before the penetration does. For ζ < 1 this is at the time
+/// `t = 2 arccos ζ / ω_d`, with the damped angular frequency `ω_d = √(k/m) √(1 − ζ²)`. So
+/// `e = exp(−2 ζ arccos ζ / √(1 − ζ²))`, the square of the restitution of the speed-gap law. For ζ > 1, `arcosh ζ`
+/// replaces `arccos ζ`, and `√(ζ² − 1)` replaces `√(1 − ζ²)`.
 pub fn kelvin_voigt(damping_ratio: f64) -> f64 {
     let e = speed_gap(damping_ratio);
     e * e
@@ -47,12 +48,13 @@ pub fn speed_gap_damping_ratio(restitution: f64) -> Option<f64> {
     invert(restitution, speed_gap)
 }
 
-/// Returns the damping ratio ζ at which the Kelvin–Voigt law has a restitution `0 < e ≤ 1`.
+/// Returns the damping ratio ζ at which the Kelvin–Voigt law has a restitution `0 < e ≤ 1`; `None` for other values, as
+/// in [`speed_gap_damping_ratio`].
 pub fn kelvin_voigt_damping_ratio(restitution: f64) -> Option<f64> {
     invert(restitution, kelvin_voigt)
 }
 
-/// Solves `law(ζ) = e` by bisection; `law` decreases monotonically from 1 at ζ = 0.
+/// Solves `law(ζ) = e` by bisection; `law` decreases monotonically from 1 at ζ = 0. Returns `None` unless `0 < e ≤ 1`.
 fn invert(restitution: f64, law: impl Fn(f64) -> f64) -> Option<f64> {
     if !(restitution > 0.0 && restitution <= 1.0) {
         return None;
@@ -105,7 +107,8 @@ fn excess(u: f64) -> f64 {
     }
 }
 
-/// Returns the Hunt–Crossley dissipation `d` (s/m) for a restitution `0 < e ≤ 1` at `speed` (m/s).
+/// Returns the dissipation `d` (s/m) at which the Hunt–Crossley law has a restitution `0 < e ≤ 1` for an impact at
+/// `speed` (m/s); `None` for other values of the restitution.
 pub fn hunt_crossley_dissipation(restitution: f64, speed: f64) -> Option<f64> {
     invert(restitution, |u| hunt_crossley(u, 1.0)).map(|u| u / speed)
 }

@@ -24,7 +24,7 @@ pub(super) struct Line<S: Space> {
     bodies: [BodyId; 2],
     /// Vectors (m) from the centers of mass of the bodies to their attachment points, in the inertial frame.
     pub(super) arms: [S::Vector; 2],
-    /// Vector (m) from the first attachment point to the second.
+    /// Vector (m) from the first attachment point to the second, in the inertial frame.
     apart: S::Vector,
     /// Distance (m) between the points.
     pub(super) distance: S::Real,
