@@ -139,7 +139,7 @@ struct Factor {
 struct Correlation {
     /// Names of the factors.
     factors: Vec<String>,
-    /// Correlation of any two of the factors, each expressed as a standard normal deviate.
+    /// Correlation coefficient of any two of the factors, each transformed to a standard normal deviate.
     coefficient: f64,
 }
 
@@ -242,8 +242,8 @@ impl Study {
         })
     }
 
-    /// Returns the correlation of two factors, each expressed as a standard normal deviate; the factors are given by
-    /// the names of their columns.
+    /// Returns the correlation coefficient of two factors, each transformed to a standard normal deviate. The factors
+    /// are identified by the names of their columns. The coefficient is 0 if no group contains both factors.
     pub(crate) fn correlation(&self, factors: [&str; 2]) -> f64 {
         if factors[0] == factors[1] {
             return 1.0;

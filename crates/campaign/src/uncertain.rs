@@ -1,6 +1,6 @@
 //! Ranges in which the results of a study lie as the uncertain constants of the seats vary.
 //!
-//! Every run of a study of heights, a ranking or a score draws its own friction, stiffness and damping. The same
+//! Every run of a study of stack heights, a ranking or a score draws its own friction, stiffness and damping. The same
 //! regression as for the variants of a stack ([`Fitted`]) separates the effect of these constants from the sampling
 //! error. Since each motion is run at several levels of shaking, the regression has a term for every motion and for the
 //! level.
@@ -14,7 +14,7 @@ pub use barrelstack::variants::Fitted;
 use crate::decision::Cases;
 use crate::study::{Collected, Column, Distribution, Study, Value};
 
-/// Uncertain constants, each with its field in a scenario and its name.
+/// Uncertain constants: for each, the path of its field in a scenario, and its name in reports.
 const CONSTANTS: [(&str, &str); 12] = [
     ("interface.rack-ground.friction.coefficient", "friction of racks on the floor"),
     ("interface.rack-ground.stiffness", "stiffness of racks on the floor"),
@@ -30,7 +30,7 @@ const CONSTANTS: [(&str, &str); 12] = [
     ("interface.rack-rack.restitution", "damping of racks on racks"),
 ];
 
-/// Units of the constants: as written in tables, and as written in reports.
+/// Units of the constants: for each, the notation in tables, and the notation in reports.
 const UNITS: [(&str, &str); 7] = [
     ("", "1"),
     ("N/m", "N/m"),
@@ -78,12 +78,12 @@ pub(crate) struct Sample {
     seed: u64,
     /// Correlation matrix of the standard normal deviates of the constants.
     correlations: Vec<Vec<f64>>,
-    /// `true` if some run has no verdict, or if its intensity or a value of its constants is not known.
+    /// `true` if there is a run without a verdict, or one whose intensity or constants are not all known.
     incomplete: bool,
 }
 
 impl Sample {
-    /// Creates the sample of the cases of a study.
+    /// Creates a sample from the cases of a study.
     pub(crate) fn of(study: &Study, collected: &Collected, cases: &Cases) -> Self {
         let mut sample = Self::default();
         sample.add(study, collected, cases);
@@ -91,7 +91,7 @@ impl Sample {
         sample
     }
 
-    /// Adds the cases of a study of the same stack; the study may have other motions.
+    /// Adds the cases of another study of the same stack, which may use different motions.
     pub(crate) fn add(&mut self, study: &Study, collected: &Collected, cases: &Cases) {
         if self.runs.is_empty() {
             (self.constants, self.seed) = (drawn(study), study.seed);
@@ -171,9 +171,11 @@ fn drawn(study: &Study) -> Vec<Drawn> {
 }
 
 impl Sample {
-    /// Returns the effect of the constants at each intensity, in the order of `stripes`. Without uncertain constants,
-    /// the range at an intensity is the confidence interval that `sampled` returns. An element is `None` if the effect
-    /// at its intensity is unknown.
+    /// Returns, for each element of `stripes`, the 95 % range of the share of collapses at its intensity as the
+    /// constants vary, and the effect of each constant on this share.
+    ///
+    /// Without uncertain constants, the range is the confidence interval that `sampled` returns. An element of the
+    /// result is `None` if the runs cannot be fitted at its intensity.
     pub(crate) fn at_levels(
         &self,
         stripes: &[Stripe],

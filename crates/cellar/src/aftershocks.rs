@@ -1,4 +1,4 @@
-//! Survival of aftershocks of several strengths that follow the same main shock.
+//! Stacks that survive an aftershock, for several strengths of the aftershock after the same main shock.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -187,7 +187,8 @@ fn summarized(
     summary
 }
 
-/// Returns the stacks that stand after the main shock, in the order of inspection.
+/// Returns the stacks that stand after the main shock in at least one variant, in the order in which they should be
+/// inspected.
 fn inspection(prepared: &Prepared, counted: &[&OfVariant]) -> Vec<Margin> {
     let margin = |(at, standing): (usize, &crate::scenario::Standing)| {
         let after = |case: &Case| !case.shocks[1].stacks[at].fallen_before;

@@ -1,4 +1,4 @@
-//! Results of a cellar: of all its variants, and of the run that is shown.
+//! Results of a cellar: of all its variants, and of the one run that reports show in detail.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -22,15 +22,15 @@ pub struct Answer {
     pub prepared: Prepared,
     /// Results of all variants in order, from variant 0, the room as stated in its file; interrupted runs are left out.
     pub cases: Vec<Case>,
-    /// Result of the run that is shown.
+    /// Result of the run that reports show in detail.
     pub case: Case,
-    /// The run that is shown, with its frames.
+    /// The run that reports show in detail, with its recorded frames.
     pub shown: RoomRun,
     /// Summary of all variants and of the run that is shown.
     pub summary: CellarSummary,
 }
 
-/// Runs all variants of a cellar on all cores, and then the run that is shown.
+/// Runs all variants of a cellar on all cores, and then the run that `choice` selects for display.
 ///
 /// Results do not depend on the number of cores. The observer receives the progress and may stop the work; the results
 /// until then are returned.

@@ -137,7 +137,7 @@ impl<'a> ContactKinds<'a> {
     }
 
     /// Returns the index of the contact law between two kinds of a free scene, and `true` if the law names the second
-    /// kind first.
+    /// kind first; `None` if the scene has no law for these kinds.
     fn law(&self, scene_index: usize, a: &str, b: &str) -> Option<(usize, bool)> {
         let mut laws = self.scenes[scene_index].interfaces.iter().enumerate();
         laws.find_map(|(at, law)| {

@@ -64,7 +64,7 @@ pub(crate) struct Contact {
     pub(crate) time: f64,
     /// The bodies of the first contact.
     pub(crate) bodies: [Owner; 2],
-    /// Force (N) in the frame of the island at the last step.
+    /// Total force (N) on the first of the two parties after the last time step, in the frame of the island.
     pub(crate) last: Vec3,
     now: Vec3,
     /// Impulse (N·s) so far: the time integral of the magnitude of the force.
@@ -77,7 +77,7 @@ pub(crate) struct Contact {
 pub(crate) struct Watch {
     pub(crate) fates: Fates,
     pub(crate) rest: Rest,
-    /// First contact with a body of another stack: time, own body, other body.
+    /// First contact with a body of another stack: time (s), own body, other body; `None` before this contact.
     pub(crate) touched: Option<(f64, BodyId, StackBody)>,
     pub(crate) touched_obstacle: Option<(f64, usize)>,
     /// Impulse (N·s) that other stacks exert on the stack until the first of its bodies loses its seat. It is the sum
@@ -98,7 +98,8 @@ pub(crate) struct Live {
     kept: Vec<usize>,
     /// For every body, the largest distance (m) from its pose at the start of the window.
     pub(crate) travels: Vec<f64>,
-    /// Body that, in the next step, could have exceeded the distance that [`Island::tubes`] allows.
+    /// The body that stopped the last advance, since it could have exceeded the distance that [`Island::tubes`] allows
+    /// in the next step; `None` if the advance was not stopped by a body.
     pub(crate) stopped_by: Option<BodyId>,
     /// Time (s) before which the run of the island does not end, because a barrel rolls toward another stack.
     pub(crate) not_before: f64,
@@ -162,7 +163,7 @@ pub(crate) struct Island {
     pub(crate) every: Option<f64>,
     /// For every body, the distance (m) that it may move in the current window.
     pub(crate) tubes: Vec<f64>,
-    /// Poses relative to the ground at the start of the window.
+    /// For every body, its pose relative to the ground at the start of the window.
     from: Vec<Pose<Spatial>>,
     /// The state at the start of the window.
     start: Option<Box<Live>>,
@@ -223,18 +224,18 @@ impl Island {
         (poses, twists)
     }
 
-    /// Returns the pose of a body in the frame of the room, relative to the ground.
+    /// Returns the pose of a body relative to the ground, in the coordinates of the room.
     pub(crate) fn in_room(&self, body: BodyId) -> Pose<Spatial> {
         self.fixed.frame.pose(self.relative(body))
     }
 
-    /// Returns the velocity of a body in the frame of the room, relative to the ground.
+    /// Returns the velocity (m/s) of a body relative to the ground, along the axes of the room.
     pub(crate) fn velocity(&self, body: BodyId) -> Vec3 {
         let twists = &self.live.running.state.twists;
         self.fixed.frame.vector(twists[body].linear - twists[Stack::GROUND].linear)
     }
 
-    /// Returns the pose of a body in the frame of the island, relative to the ground.
+    /// Returns the pose of a body relative to the ground, in the coordinates of the island.
     fn relative(&self, body: BodyId) -> Pose<Spatial> {
         let poses = &self.live.running.state.poses;
         let Pose { position, orientation } = poses[body];

@@ -35,7 +35,7 @@ const EXACT: f64 = 0.1;
 /// A pair of bodies that are near each other: two bodies of different stacks, or a body and an obstacle.
 struct Couple {
     bodies: [Owner; 2],
-    /// Gap (m) at the last measurement, or a lower bound of it.
+    /// Gap (m) at the last measurement, or a lower bound on it.
     gap: f64,
     /// Lengths (m) of the paths of the two bodies at the last measurement of the gap.
     since: [f64; 2],
@@ -43,7 +43,7 @@ struct Couple {
     limits: [f64; 2],
 }
 
-/// Bodies that are near each other.
+/// Pairs of bodies that are near each other, and the lengths of the paths of all bodies.
 pub(crate) struct Nearby {
     couples: Vec<Couple>,
     /// For every body, the indices of its pairs in `couples`.
@@ -54,7 +54,7 @@ pub(crate) struct Nearby {
     made_for: Vec<Vec3>,
 }
 
-/// For every stack: index of its island, and number of its first body in the model of the island.
+/// For every stack, the index of its island, and the ID of its first body in the model of the island.
 pub(crate) type Places = Vec<(usize, BodyId)>;
 
 impl Nearby {
@@ -308,14 +308,15 @@ impl Nearby {
 }
 
 impl Couple {
-    /// Returns a lower bound of the present gap (m) from the measured gap and the path lengths since the measurement.
+    /// Returns a lower bound on the current gap (m): the measured gap, less the lengths of the paths of both bodies
+    /// since the measurement. `numbers` are the indices of the two bodies in `paths`.
     fn bound(&self, paths: &[f64], numbers: [usize; 2]) -> f64 {
         let [one, other] = numbers.map(|number| paths[number]);
         self.gap - (one - self.since[0]) - (other - self.since[1])
     }
 }
 
-/// Returns the island of a body and the ID of the body in its model; `None` for an obstacle.
+/// Returns the island that contains a body, and the ID of the body in the model of this island; `None` for an obstacle.
 pub(crate) fn locate<'a>(
     islands: &'a [Option<Island>],
     places: &Places,
@@ -326,7 +327,7 @@ pub(crate) fn locate<'a>(
     Some((islands[island].as_ref()?, first + body))
 }
 
-/// Returns the gap (m) between two bodies, or a lower bound if it exceeds `enough` (m).
+/// Returns the gap (m) between two bodies, or a lower bound on the gap if it exceeds `enough` (m).
 pub(crate) fn gap(
     world: &World<'_>,
     islands: &[Option<Island>],

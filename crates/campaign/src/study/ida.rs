@@ -5,13 +5,13 @@
 /// The method is hunt and fill (Vamvatsikos and Cornell 2004, Earthquake Spectra 20:523). Levels rise in
 /// growing steps until the stack collapses. Then the gap between the highest level at which the stack stood
 /// and the lowest level at which it collapsed is narrowed: each further run is placed at one third of the
-/// gap. The remaining runs are placed in the middle of the widest gaps below. All levels are in SI units of
-/// the intensity measure.
+/// gap. Each remaining run is placed in the middle of the widest gap between neighboring levels below this
+/// narrowed gap. All levels are in SI units of the intensity measure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hunt {
     /// Lowest level, at which the hunt starts.
     pub first: f64,
-    /// First step by which the level is raised.
+    /// Size of the first step, from the first to the second level.
     pub step: f64,
     /// Amount by which each step is larger than the step before it.
     pub growth: f64,

@@ -115,7 +115,7 @@ pub(crate) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
     }
 }
 
-/// Returns the error for a damaged manifest.
+/// Returns the error for a damaged manifest; `how` is a clause that describes the damage.
 pub(super) fn damaged(folder: &Path, how: &str) -> StudyError {
     let reason = format!(
         "holds a damaged {MANIFEST}: {how}; run the study again into this folder, with the file study.toml there, which \

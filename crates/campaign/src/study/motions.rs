@@ -28,7 +28,7 @@ pub(super) struct Motion {
 pub(super) enum Shaking {
     /// The motion of the base scenario, with the changes that the factors of the case make.
     Base,
-    /// A motion that is stated as in a scenario file.
+    /// A motion that is specified as in a scenario file.
     Spec(Box<MotionSpec>),
     /// One realization of a synthetic ensemble.
     Synthetic(Box<Synthetic>),

@@ -21,7 +21,7 @@ pub struct Chunk {
 
 /// Sizes of chunks: the size that the study states or, by default, 64 cases, doubled after every 512 chunks.
 ///
-/// Chunks are small enough that little work is lost at an interruption and that many processes can work at
+/// Chunks are small enough that little work is lost if a study is interrupted, and that many processes can work at
 /// once. They are large enough that a study of a million cases has only about 2,500 files. In a study of a
 /// million cases the last chunks are 16 times as large as the first. The size of a chunk does not depend on
 /// the number of later chunks.
@@ -29,11 +29,11 @@ pub struct Chunk {
 pub(super) enum Sizes {
     /// All chunks have the given number of cases.
     Given(u32),
-    /// Chunks with higher numbers have more cases.
+    /// The default: chunks of 64 cases at first, with a size that doubles after every 512 chunks.
     Growing,
 }
 
-/// Number of chunks of one size before the size doubles.
+/// Number of successive chunks of the same size, after which the size doubles.
 const ALIKE: u64 = 512;
 
 /// Maximum number of doublings, which prevents overflow. A study of ten million cases, the maximum, needs
@@ -78,7 +78,7 @@ impl Sizes {
 /// Additional cases therefore never change a full chunk.
 #[derive(Clone, Debug)]
 pub(super) enum Chunks {
-    /// Chunks follow the order of the cases.
+    /// Each chunk holds consecutive cases; `count` is the total number of cases.
     Even { count: u64, sizes: Sizes },
     /// For each chunk, the numbers of its cases.
     Listed(Vec<Vec<u32>>),

@@ -190,7 +190,8 @@ impl Study {
         built
     }
 
-    /// Returns the base scenario in which the factors have the given values.
+    /// Returns the base scenario with the factors set to the given values. A factor without a value is left as it is
+    /// in the base scenario.
     pub(super) fn scenario(&self, settings: &[Option<Setting>]) -> Result<Scenario, ScenarioError> {
         let changes = self.factors.iter().zip(settings).flat_map(|(factor, setting)| {
             let fields = factor.fields.iter().map(String::as_str);
@@ -257,7 +258,8 @@ impl Study {
     }
 }
 
-/// Returns an error for scenarios that a study cannot run: a stack in both planes, and a three-dimensional free scene.
+/// Returns an error for scenarios that a study cannot run: a stack that is simulated in two planes (across and along
+/// the barrels), and a three-dimensional free scene.
 pub(super) fn runs(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
     let message = match (&scenario.scene, scenario.stack()) {
         (Scene::Spatial(_), _) => {

@@ -11,7 +11,7 @@ use barrelstack_report::column::{Value, ValueKind};
 /// One value of a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Setting {
-    /// Value as written in a scenario file, with its place in the study file.
+    /// Value as written in a scenario file, with its position in the study file.
     pub(super) node: Node,
     /// Value as written in a table, in SI units.
     pub(super) value: Value,
@@ -94,12 +94,12 @@ impl Domain {
         Some(Self { kind: field.kind, dimension })
     }
 
-    /// Returns the domain of positive quantities of a dimension.
+    /// Returns the domain of positive quantities that have one of the given dimensions.
     pub(super) fn positive(dimensions: &'static [Dimension]) -> Self {
         Self { kind: Kind::Quantity(dimensions, Range::POSITIVE), dimension: dimensions[0] }
     }
 
-    /// Restricts the domain to the dimension of `node`, the first of the values that are given.
+    /// Restricts the domain to the dimension of `node`, which is the first of the given values.
     ///
     /// A field may allow several dimensions, such as acceleration or velocity, but a column holds only one.
     #[must_use]
@@ -211,7 +211,7 @@ impl Domain {
         Ok(settings)
     }
 
-    /// Reads the values of a `[….range]` table.
+    /// Reads a `[….range]` table, and returns the `count` values from `from` to `to` that it defines.
     pub(super) fn range(
         self,
         reader: &Reader<'_>,
@@ -270,7 +270,8 @@ impl Domain {
         Ok(settings)
     }
 
-    /// Returns the value that the field has in the resolved base scenario.
+    /// Returns the table value for `written`, the value of the field in the resolved base scenario; `None` if it does
+    /// not fit the kind or the dimension of the domain.
     pub(super) fn base_value(self, written: &Written) -> Option<Value> {
         match (self.column_kind(), written) {
             (ValueKind::Integer, Written::Integer(value)) => value.map(Value::Integer),

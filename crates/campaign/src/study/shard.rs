@@ -147,7 +147,7 @@ const NUMBER: i16 = 2;
 /// Definition levels, repetition levels and numbers of a column of lists.
 type Divided = (Vec<i16>, Vec<i16>, Vec<f64>);
 
-/// Parses lists of numbers that are separated by semicolons.
+/// Parses lists of numbers; in each list, semicolons separate the numbers.
 fn divided(lists: &[Option<String>]) -> Result<Divided, ParquetError> {
     let (mut defined, mut repeated, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
     for list in lists {

@@ -20,14 +20,14 @@ use crate::watch::Ending;
 /// Result of a case, with directions if the case is three-dimensional.
 pub(super) struct FinishedCase {
     pub(super) result: CaseResult,
-    /// Direction in which the first body left its seat, and for each fallen barrel the direction from its original
-    /// place.
+    /// Direction in which the first body left its seat (`None` if no body did), and for each fallen barrel the
+    /// direction from its position at rest to its final position.
     ///
     /// `None` for a case in a plane, or without a verdict.
     headings: Option<(Option<Heading>, Vec<Heading>)>,
 }
 
-/// Converts the result of a case in a plane, or of a case that could not run.
+/// Creates a result without directions, for a case in a plane or a case that could not run.
 impl From<CaseResult> for FinishedCase {
     fn from(result: CaseResult) -> Self {
         Self { result, headings: None }

@@ -43,8 +43,8 @@ impl Tally {
         }
     }
 
-    /// Returns the share of collapsed cases among the cases with a verdict, and its 95 % interval (Wilson); `None` if
-    /// no case has a verdict.
+    /// Returns the share of collapsed cases among the cases with a verdict, and its 95 % confidence interval (Wilson);
+    /// `None` if no case has a verdict.
     pub fn collapse(&self) -> Option<(f64, [f64; 2])> {
         if self.judged == 0 {
             return None;

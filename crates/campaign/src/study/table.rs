@@ -66,10 +66,11 @@ impl StudyTable {
         Self { columns: specs.iter().cloned().map(Column::empty).collect() }
     }
 
-    /// Appends a row, which has one value per column.
+    /// Appends a row, which has one element per column; an element is `None` if the value does not apply or is unknown.
     ///
     /// # Errors
-    /// If a value is missing, or if its kind differs from that of its column.
+    /// If the number of elements differs from the number of columns, or if the kind of a value differs from that of its
+    /// column.
     pub fn push(&mut self, row: Vec<Option<Value>>) -> Result<(), StudyError> {
         if row.len() != self.columns.len() {
             let (found, expected) = (row.len(), self.columns.len());
@@ -121,12 +122,12 @@ impl StudyTable {
         self.columns.iter().map(|column| &column.spec)
     }
 
-    /// Returns the columns that have a role, such as all factors, in order.
+    /// Returns the columns with the given role, such as the columns of all factors, in order.
     pub fn of_role(&self, role: Role) -> impl Iterator<Item = &Column> {
         self.columns.iter().filter(move |column| column.spec.role == role)
     }
 
-    /// Returns the column with a name, which does not include the unit; `None` if there is no such column.
+    /// Returns the column with the given name (without the unit); `None` if there is no such column.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.spec.name == name)
     }

@@ -64,7 +64,7 @@ fn rows(found: &CellarComparison) -> Vec<Row<'_>> {
     run.chain(found.left_out.iter().map(Row::LeftOut)).collect()
 }
 
-/// Formats the difference between two layouts, with its sign and its interval.
+/// Formats the difference between two layouts, multiplied by `scale`, with its sign and its confidence interval.
 fn change(change: &Change, scale: f64) -> Cell {
     let signed = |value: f64| match amount(value.abs()) {
         none if none == "0" => none,

@@ -1,4 +1,4 @@
-//! Describes a comparison of layouts in sentences, starting with the effect.
+//! Describes a comparison of layouts in sentences, starting with the main result.
 
 use barrelstack::variants::words::percent;
 use barrelstack_report::{capital, measured, shortest};
@@ -7,8 +7,8 @@ use super::{CellarComparison, Change, Estimate, LayoutAnswer, LayoutPair, LeftOu
 use crate::plan::liters;
 use crate::words::plural;
 
-/// Returns the effect in one sentence or two. For two layouts, it states what changes from the first to the second; for
-/// more, which layout loses the smallest share of its barrels.
+/// Returns the main result in one sentence or two. For two layouts, it states what changes from the first to the
+/// second; for more, which layout loses the smallest share of its barrels.
 pub fn headline(found: &CellarComparison) -> String {
     if !found.unfinished.is_empty() {
         let done = found.layouts.len();
@@ -136,7 +136,8 @@ fn fall(barrels: f64, of: &str) -> String {
     format!("{shown} {of}barrels fall")
 }
 
-/// Returns the difference in words: less, more, or neither.
+/// Formats a difference, such as "3.2 fewer": its magnitude, followed by `less` or `more`. The result is `same` if the
+/// magnitude is rounded to zero.
 fn words_of(difference: f64, [less, more, same]: [&str; 3]) -> String {
     match amount(difference.abs()) {
         none if none == "0" => same.to_owned(),
@@ -144,8 +145,8 @@ fn words_of(difference: f64, [less, more, same]: [&str; 3]) -> String {
     }
 }
 
-/// Returns the interval of a change and the number of pairs in words. If the interval includes zero, the words state
-/// that the pairs prove no difference.
+/// Returns the confidence interval of a change, multiplied by `scale`, and the number of pairs in words. If the
+/// interval includes zero, the words state that the pairs prove no difference.
 fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutPair) -> String {
     let pairs = variants(pair);
     let Some([low, high]) = change.interval.map(|both| both.map(|bound| scale * bound)) else {
@@ -166,7 +167,7 @@ fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutP
     }
 }
 
-/// Describes the variants in which two layouts are compared, such as "the same 8 variants".
+/// Describes the variants for which two layouts are compared, such as "the same 8 variants".
 fn variants(pair: &LayoutPair) -> String {
     match (pair.variants, pair.same_draws) {
         (1, _) => "one variant".to_owned(),
@@ -184,7 +185,7 @@ pub(super) fn amount(value: f64) -> String {
     shortest((10.0 * value).round() / 10.0)
 }
 
-/// Formats a mean with its interval, such as "12.4 (8 to 20)".
+/// Formats a mean with its confidence interval, such as "12.4 (8 to 20)".
 pub(super) fn estimate(one: &Estimate) -> String {
     let mean = amount(one.mean);
     one.interval.map_or_else(
