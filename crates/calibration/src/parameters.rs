@@ -28,7 +28,7 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// All parameters, with their names on the command line.
+    /// All parameters with their short names.
     pub const NAMES: [(&'static str, Self); 4] = [
         ("k", Self::Stiffness),
         ("c", Self::Damping),
