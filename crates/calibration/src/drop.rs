@@ -41,8 +41,8 @@ fn fit(start: &[f64], evaluate: &least_squares::Evaluate<'_>) -> Option<Fit> {
 ///
 /// If `striker` is given, the impact is solved with gravity and takes a finite time, and the damping ratio ζ is fitted
 /// to the rebounds or the times. Gravity presses the mass into the contact and so reduces the rebound of slow impacts.
-/// If `striker` is `None`, the impact is assumed to be instantaneous. For heights, the scatter is attributed to the restitution,
-/// which differs from drop to drop; for times, it is attributed to errors of measurement.
+/// If `striker` is `None`, the impact is assumed to be instantaneous. For heights, the scatter is attributed to the
+/// restitution, which differs from drop to drop; for times, it is attributed to errors of measurement.
 ///
 /// # Errors
 /// If the table lacks columns or rows, or a rebound is not lower than its drop.

@@ -57,11 +57,11 @@ pub struct Plane {
     exchanged: Option<MotionSpec>,
 }
 
-/// Returns a scenario in each plane of its stack, the plane across the barrels first.
+/// Returns the planes in which a scenario is analyzed, the plane across the barrels first.
 ///
-/// With both planes, each has its own horizontal component of the record; the plane across the
-/// barrels has the component that the scenario states. In the second half of the variants the
-/// components are exchanged, as in a stack turned by a right angle.
+/// Unless the scenario has a stack that is analyzed in both planes, there is only one [`Plane`]. If there are two, each
+/// has its own horizontal component of the record; the plane across the barrels has the component that the scenario
+/// states. In the second half of the variants, the components are exchanged, as in a stack turned by a right angle.
 ///
 /// # Errors
 /// When the motion cannot be read.

@@ -102,7 +102,7 @@ pub type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
 /// Variants of a changed stack, prepared to be run in blocks.
 pub trait Trial {
-    /// Runs a block of variants, numbered from zero, in every plane.
+    /// Runs the variants whose indices are in `block`, in every plane; index 0 is the variant with the number 1.
     ///
     /// Returns the verdicts in each plane, or `Break` if the observer cancels.
     fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Judged;

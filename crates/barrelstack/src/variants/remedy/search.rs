@@ -51,7 +51,8 @@ impl Plan {
         1.0 - (1.0 - LEVEL) / (self.changes() * self.planes).max(1) as f64
     }
 
-    /// Returns the block of variants that follows the first `ran` variants; variants are numbered from zero.
+    /// Returns the indices of the block of variants that follows the first `ran` variants; index 0 is the variant with
+    /// the number 1.
     fn block(&self, ran: u32) -> Range<u32> {
         let size = if ran == 0 { FIRST } else { BLOCK };
         ran..ran.saturating_add(size).min(self.variants)
@@ -122,8 +123,8 @@ pub type Verdicts = Vec<Vec<Option<bool>>>;
 /// Verdicts of a block of variants, or `Break` if the block was canceled.
 pub type Judged = ControlFlow<(), Verdicts>;
 
-/// Function that runs a block of variants of one change. Its arguments are the index of the change and the numbers of
-/// the variants, which start from zero.
+/// Function that runs a block of variants of one change. Its arguments are the index of the change and the indices of
+/// the variants; index 0 is the variant with the number 1.
 type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Judged, E> + 'a;
 
 /// Tries changes until the highest sufficient stack and the loosest sufficient straps are found.
