@@ -103,7 +103,7 @@ pub trait Repeatable: Sized + Send + Sync {
     /// Returns the outcome.
     fn outcome(&self) -> OutcomeSummary;
 
-    /// Returns the time (s) at which each barrel counts as fallen.
+    /// Returns, for each barrel, the time (s) at which it counts as fallen; `None` if it does not fall.
     fn falls(&self) -> Vec<Option<f64>>;
 
     /// Returns the times (s) of the samples.
@@ -349,7 +349,7 @@ impl Repeat {
 }
 
 /// Returns the first sample time (s) at which a body is farther than [`APART`] from its position in
-/// the base run.
+/// the base run; `None` if there is no such sample.
 fn apart_at<R: Repeatable>((base, paths): (&R, &[Vec<[f64; 3]>]), other: &R) -> Option<f64> {
     let limit = APART * base.scenario().run.similitude;
     let (times, others) = (other.times(), other.paths());
@@ -410,8 +410,8 @@ impl Verification {
         self.repeats.iter().any(|repeat| repeat.outcome.kind != "not-judged")
     }
 
-    /// Returns the parts of the outcome that are compared; only the kind of the outcome if the
-    /// stack stands in all runs.
+    /// Returns the names of the parts of the outcome that are compared. If no repeat collapses, this is
+    /// only the kind of the outcome.
     fn parts(&self) -> &'static [&'static str] {
         let collapses = self.repeats.iter().any(|repeat| repeat.outcome.mode.is_some());
         if collapses { &["kind", "mode", "first body"] } else { &["kind"] }

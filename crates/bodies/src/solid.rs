@@ -64,7 +64,7 @@ fn part_names() -> Vec<&'static str> {
     OF_PARTS.iter().map(|variant| variant.name).collect()
 }
 
-/// A dimension of a solid, from 0.1 mm to 10 km.
+/// A length of a solid, such as a radius, from 0.1 mm to 10 km.
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e4 });
 

@@ -92,6 +92,9 @@ pub struct Observations {
 impl Observations {
     /// Reads the observations from a table.
     ///
+    /// If a row does not state the end of the observation, the end is the last time in the row plus five times the
+    /// standard deviation `errors.reading`.
+    ///
     /// # Errors
     /// If a cell is invalid; the error names the first invalid cell.
     pub fn read(table: &Table, errors: &Errors) -> Result<Self, CalibrateError> {

@@ -34,15 +34,15 @@ fn fit(start: &[f64], evaluate: &least_squares::Evaluate<'_>) -> Option<Fit> {
     least_squares::fit(Start { parameters, slopes: None, width: 1e-4, share: 0.01 }, evaluate)
 }
 
-/// Estimates the restitution from a drop test, and the damping if the striker is given.
+/// Estimates the restitution from a drop test, and also the damping if `striker` is given.
 ///
 /// The table has the columns `drop height` and `rebound height`, or the column `time` with the times of the impacts of
 /// one bounce sequence.
 ///
-/// With a striker, the impact is solved with gravity and takes a finite time, and the damping ratio ζ is fitted to the
-/// rebounds or the times. Gravity presses the mass into the contact and so reduces the rebound of slow impacts. Without
-/// a striker, the impact is assumed to be instantaneous. For heights, the scatter is attributed to the restitution,
-/// which differs from drop to drop; for times, it is attributed to errors of measurement.
+/// If `striker` is given, the impact is solved with gravity and takes a finite time, and the damping ratio ζ is fitted
+/// to the rebounds or the times. Gravity presses the mass into the contact and so reduces the rebound of slow impacts.
+/// If `striker` is `None`, the impact is assumed to be instantaneous. For heights, the scatter is attributed to the
+/// restitution, which differs from drop to drop; for times, it is attributed to errors of measurement.
 ///
 /// # Errors
 /// If the table lacks columns or rows, or a rebound is not lower than its drop.
@@ -122,7 +122,7 @@ struct DropResult {
 }
 
 impl Striker {
-    /// Returns the total stiffness (N/m) and damping (N·s/m) for a damping ratio.
+    /// Returns the stiffness (N/m) and damping (N·s/m) of all nodes together, for a damping ratio.
     fn constants(&self, ratio: f64) -> (f64, f64) {
         let stiffness = self.stiffness * f64::from(self.nodes);
         (stiffness, restitution::damping(stiffness, ratio, self.mass))

@@ -27,8 +27,8 @@ pub(super) fn curve(label: &str, [from, to]: [f64; 2], of: impl Fn(f64) -> f64) 
     fitted(label, x, y, 0)
 }
 
-/// Creates a horizontal line at an estimate between two values of `x`, and shades the interval of the
-/// estimate.
+/// Creates a horizontal line at the value of an estimate, drawn from one value of `x` to another; the interval of the
+/// estimate is shaded.
 pub(super) fn level(estimate: &Estimate, [from, to]: [f64; 2], index: usize) -> Series {
     let label = format!("{}, 95 % interval", estimate.name);
     let range = vec![[estimate.low, estimate.high]; 2];

@@ -22,8 +22,8 @@ pub struct Fit {
     pub parameters: Vec<f64>,
     /// Residuals at the fitted parameters.
     pub residuals: Vec<f64>,
-    /// Derivatives of the residuals with respect to every parameter, taken at the fitted parameters or at
-    /// most one final step away from them.
+    /// Derivatives of the residuals: one row per parameter, one column per residual. They are taken at the
+    /// fitted parameters or at most one final step away from them.
     pub slopes: Vec<Vec<f64>>,
     /// `true` for each parameter on which at least one residual depends.
     pub matters: Vec<bool>,
@@ -44,7 +44,8 @@ pub struct Fit {
 pub struct Start {
     /// Parameters at which the fit starts.
     pub parameters: Vec<f64>,
-    /// Derivatives of the residuals at the start, if known.
+    /// Derivatives of the residuals at the start: one row per parameter, one column per residual. If this is
+    /// `None`, they are computed by finite differences.
     pub slopes: Option<Vec<Vec<f64>>>,
     /// Step of the central differences.
     pub width: f64,
@@ -123,7 +124,8 @@ fn finish(
     Fit { parameters, residuals, slopes, matters, covariance, information, freedom, converged }
 }
 
-/// Computes the derivatives of all residuals with respect to every parameter.
+/// Computes the derivatives of the residuals: one row per parameter, one column per residual. `None` if the model has
+/// no result at a point of the finite differences.
 fn jacobian(at: &[f64], width: f64, evaluate: &Evaluate<'_>) -> Option<Vec<Vec<f64>>> {
     let moved = |which: usize, by: f64| {
         let mut point = at.to_vec();

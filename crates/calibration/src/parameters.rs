@@ -28,7 +28,7 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// All parameters, with their names on the command line.
+    /// All parameters with their short names.
     pub const NAMES: [(&'static str, Self); 4] = [
         ("k", Self::Stiffness),
         ("c", Self::Damping),
@@ -131,8 +131,8 @@ impl Tunable {
         scenario
     }
 
-    /// Returns the contact constants at a point, of the barrel–rack interface or of the rack–ground
-    /// interface.
+    /// Returns the contact constants of an interface at a point. The interface is barrel–rack if `barrel_rack` is
+    /// `true`, and rack–ground otherwise.
     fn constants(&self, barrel_rack: bool, point: &[f64]) -> Constants {
         let mut constants = if barrel_rack { self.barrel_rack } else { self.rack_ground };
         for (parameter, log) in self.parameters.iter().zip(point) {

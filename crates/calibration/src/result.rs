@@ -60,8 +60,8 @@ pub struct Calibration {
     pub warnings: Vec<String>,
 }
 
-/// Returns words for a pair of bodies from its name in a scenario: "barrels on racks" for "barrel-rack". Other names
-/// stay as they are.
+/// Converts the name of an interface into a phrase for its pair of bodies, such as "barrel-rack" into "barrels on
+/// racks". Other names are returned unchanged.
 pub(super) fn bodies(interface: &str) -> &str {
     match interface {
         "rack-ground" => "racks on the ground",

@@ -11,7 +11,7 @@ use super::result::{bodies, quoted, short};
 use super::statistics::line;
 use super::{CalibrateError, Calibration, Estimate, Table};
 
-/// Columns of the test.
+/// Names of the columns of the table.
 const COLUMNS: [&str; 3] = ["load", "sag", "angle"];
 
 /// Fits the stiffness of a seat to the sag of a body that rests on several seats.

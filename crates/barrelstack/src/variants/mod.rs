@@ -57,11 +57,11 @@ pub struct Plane {
     exchanged: Option<MotionSpec>,
 }
 
-/// Returns a scenario in each plane of its stack, the plane across the barrels first.
+/// Returns the planes in which a scenario is analyzed, the plane across the barrels first.
 ///
-/// With both planes, each has its own horizontal component of the record; the plane across the
-/// barrels has the component that the scenario states. In the second half of the variants the
-/// components are exchanged, as in a stack turned by a right angle.
+/// Unless the scenario has a stack that is analyzed in both planes, there is only one [`Plane`]. If there are two, each
+/// has its own horizontal component of the record; the plane across the barrels has the component that the scenario
+/// states. In the second half of the variants, the components are exchanged, as in a stack turned by a right angle.
 ///
 /// # Errors
 /// When the motion cannot be read.
@@ -104,7 +104,7 @@ impl Plane {
         (0..=self.count()).collect()
     }
 
-    /// Returns a variant by its number; 0 is the nominal case.
+    /// Returns the scenario of the variant with this number; 0 is the nominal case.
     pub fn variant(&self, number: u32) -> Scenario {
         if number == 0 {
             return self.scenario.clone();
@@ -114,8 +114,8 @@ impl Plane {
         variant
     }
 
-    /// Returns a variant by its number as it is run for the verdict; such a run may end before
-    /// everything has come to rest.
+    /// Returns the scenario of a variant for a run that needs to yield only a verdict. Such a run may end
+    /// before everything has come to rest.
     pub fn trial(&self, number: u32) -> Scenario {
         let mut trial = self.variant(number);
         if let (Until::Rest, Some(imperfections)) = (trial.run.until, trial.imperfections()) {
@@ -145,7 +145,8 @@ impl Plane {
         }
     }
 
-    /// `true` if a variant belongs to the second half, in which the components are exchanged.
+    /// `true` if a variant belongs to the second half of the variants, in which the horizontal components of the
+    /// record are exchanged.
     fn is_exchanged(&self, number: u32) -> bool {
         number > self.count().div_ceil(2)
     }
@@ -254,8 +255,10 @@ pub(crate) fn run_as_far(
     Ok(results.chunks(numbers.len().max(1)).map(<[CaseResult]>::to_vec).collect())
 }
 
-/// Combines results into statistics for each plane; the results are those of the nominal case,
-/// which comes first, and of variants with the given numbers.
+/// Computes the statistics of each plane from the results of its cases.
+///
+/// `results` holds, for each plane, one result for each of `numbers`, in the same order. The first number is 0, the
+/// nominal case.
 pub fn together(planes: &[Plane], numbers: &[u32], results: Vec<Vec<CaseResult>>) -> Vec<Variants> {
     let mut found = Vec::new();
     for (plane, results) in planes.iter().zip(results) {

@@ -102,7 +102,7 @@ pub type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
 /// Variants of a changed stack, prepared to be run in blocks.
 pub trait Trial {
-    /// Runs a block of variants, numbered from zero, in every plane.
+    /// Runs the variants whose indices are in `block`, in every plane; index 0 is the variant with the number 1.
     ///
     /// Returns the verdicts in each plane, or `Break` if the observer cancels.
     fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Judged;
@@ -111,8 +111,8 @@ pub trait Trial {
 /// Function that prepares the variants of a changed stack.
 type Prepare<'a> = dyn Fn(&Scenario) -> Result<Box<dyn Trial>, GroundError> + 'a;
 
-/// Searches for the largest number of levels, and for the loosest straps, with which the failure
-/// rate of a stack stays below the limit.
+/// Searches for the largest number of levels, and for the loosest straps, with which at least
+/// [`ENOUGH`] percent of the variants of a stack stand in every plane.
 ///
 /// `observer` receives the number of finished runs of the current change, from several threads, and
 /// may cancel. Returns `None` if the stack stands, has no variants, or is run for less than the
@@ -163,7 +163,7 @@ pub fn remedy_by<'a>(
     Ok(Some(found))
 }
 
-/// `true` if a share of failures is low enough.
+/// `true` if the share of variants that fail is at most `100 − ENOUGH` percent.
 fn enough(share: f64) -> bool {
     100.0 * share <= f64::from(100 - ENOUGH)
 }
@@ -247,7 +247,8 @@ struct Change {
     scenario: Scenario,
 }
 
-/// Returns the change to fewer levels; straps on levels that no longer exist are removed.
+/// Returns the change to fewer levels; straps on levels that no longer exist are removed. `None` for
+/// a scene without a stack.
 fn lower(scenario: &Scenario, levels: u32) -> Option<Change> {
     let mut scenario = scenario.clone();
     let Scene::Stack { stack, .. } = &mut scenario.scene else { return None };
@@ -266,8 +267,10 @@ fn lower(scenario: &Scenario, levels: u32) -> Option<Change> {
     Some(Change { kind: "height", levels, pretension: None, changes, scenario })
 }
 
-/// Returns the change that straps all levels together; `None` if the stack already has straps that
-/// are at least as tight, or if the straps would tear.
+/// Returns the change that straps all levels together at a pretension (N).
+///
+/// Returns `None` for a scene without a stack, if the stack already has straps that are at least as tight, or if the
+/// straps would tear.
 fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
     let mut scenario = scenario.clone();
     let Scene::Stack { stack, .. } = &mut scenario.scene else { return None };
@@ -286,19 +289,21 @@ fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
     Some(Change { kind: "straps", levels, pretension: Some(pretension), changes, scenario })
 }
 
-/// Returns, as overrides, the change to fewer levels; straps on levels that no longer exist are removed. `None` for a
-/// scene without a stack.
+/// Returns the overrides of scenario fields, such as `stack.levels=2`, that lower a stack to the given number of levels
+/// and remove straps on levels that no longer exist. `None` for a scene without a stack.
 pub fn lowered(scenario: &Scenario, levels: u32) -> Option<Vec<String>> {
     Some(lower(scenario, levels)?.changes)
 }
 
-/// Returns, as overrides, the change that straps all levels together at a pretension (N); `None` if the stack already has
-/// straps that are at least as tight, or if the straps would tear.
+/// Returns the overrides of scenario fields that strap all levels of a stack together at a pretension (N).
+///
+/// Returns `None` for a scene without a stack, if the stack already has straps that are at least as tight, or if the
+/// straps would tear.
 pub fn strapped_together(scenario: &Scenario, pretension: f64) -> Option<Vec<String>> {
     Some(strapped(scenario, pretension)?.changes)
 }
 
-/// Returns, as TOML, those fields of a table that the scenario states.
+/// Returns the fields of a table that have the source [`Source::Given`], each as a TOML assignment `key = value`.
 fn given(scenario: &Scenario, table: &str) -> Vec<String> {
     let settings = scenario.settings();
     let own = settings.iter().filter(|one| one.source == Source::Given);

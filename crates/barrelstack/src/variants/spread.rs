@@ -240,7 +240,7 @@ pub(super) fn collapsed(result: &CaseResult) -> bool {
     matches!(result.outcome, Ok(Outcome::Collapse { .. }))
 }
 
-/// Returns the time (s) at which the first body lost its seat.
+/// Returns the time (s) at which the first body lost its seat; `None` if the case did not collapse.
 fn loss(result: &CaseResult) -> Option<f64> {
     match &result.outcome {
         Ok(Outcome::Collapse { time, .. }) => Some(*time),

@@ -46,8 +46,8 @@ fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
 /// Returns the number of the medoid: the run with the smallest sum of distances to all others.
 ///
 /// The distances are added over all planes, because a variant number denotes the same stack in all
-/// planes. Of several runs with the smallest sum, the first is chosen. The result is 0 if no allowed
-/// run has a verdict in all planes.
+/// planes. Only runs whose index `allowed` accepts can be chosen. Of several runs with the smallest
+/// sum, the first is chosen. The result is 0 if no allowed run has a verdict in all planes.
 pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool) -> u32 {
     let sums: Vec<Vec<Option<f64>>> = planes.iter().map(|results| sums(results)).collect();
     let count = sums.iter().map(Vec::len).min().unwrap_or(0);

@@ -120,7 +120,8 @@ fn worst<'a>(planes: &[Placed<'a>]) -> Option<Placed<'a>> {
     worst_first(planes).into_iter().next()
 }
 
-/// Returns the verdict and the counts that support it; the counts of the worst plane come first.
+/// Returns the sentence that states the verdict and the counts that support it; the counts of the worst plane come
+/// first. `None` if there are no planes.
 fn verdict(planes: &[Placed<'_>]) -> Option<String> {
     let judgment = Judgment::worst(planes.iter().map(|(_, spread)| *spread))?;
     let worst_first = worst_first(planes);
@@ -191,8 +192,8 @@ fn all_of(variants: u32) -> String {
     }
 }
 
-/// Returns the share by which a stack is judged; variants without a verdict count as collapsed.
-/// `None` if no variant has a verdict.
+/// Returns the share of collapsed variants on which the verdict is based; variants without a verdict count as
+/// collapsed. `None` if no variant has a verdict.
 fn judged_share(spread: &Spread) -> Option<f64> {
     spread.share.and(spread.largest_share())
 }
@@ -307,7 +308,8 @@ pub fn course(spread: &Spread) -> String {
     course_of("barrels", spread)
 }
 
-/// Like [`course`], for a stack that was simulated in both planes: its barrels are those in the plane.
+/// Like [`course`], for one plane of a stack that was simulated in both planes; the barrels are called "barrels in this
+/// plane".
 pub(crate) fn course_in_plane(spread: &Spread) -> String {
     course_of("barrels in this plane", spread)
 }

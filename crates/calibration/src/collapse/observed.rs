@@ -47,7 +47,7 @@ pub(super) struct Observed {
     pub(super) loss: Option<Time>,
     /// Time at which the first barrel counts as fallen.
     pub(super) first_fall: Option<Time>,
-    /// Names of barrels, and the times at which they fell.
+    /// Name of each observed barrel and the time at which it fell; `Time::Never` if it still stood at the end.
     pub(super) falls: Vec<(String, Time)>,
     /// End of the observation (s), measured from the start of the motion.
     pub(super) until: f64,

@@ -129,7 +129,8 @@ fn densities(draws: &[Draw], first: usize, proposals: &[Proposal]) -> Vec<f64> {
     draws.iter().map(density).collect()
 }
 
-/// Returns the weights of samples, which sum to one, with the likelihood raised to a power.
+/// Returns the weights of samples, which sum to one, with the likelihood raised to a power. `None` if every likelihood
+/// is zero.
 fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
     let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if most == f64::NEG_INFINITY {
@@ -145,7 +146,7 @@ fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
 }
 
 /// Returns the weights with the likelihood raised to a power, and this power. It is the largest power, at most one,
-/// for which the effective sample size is large enough.
+/// for which the effective sample size is large enough. `None` if every likelihood is zero.
 fn flattened(logs: &[f64], densities: &[f64]) -> Option<(Vec<f64>, f64)> {
     let whole = weights(logs, densities, 1.0)?;
     if effective(&whole) >= FEWEST {

@@ -152,7 +152,8 @@ impl<'a> Simulator<'a> {
         })
     }
 
-    /// Returns the values of all channels at the recorded times; `None` if the stack cannot be simulated.
+    /// Returns, for each channel, its values at the recorded times. `None` if the stack cannot be simulated or the
+    /// simulations are canceled.
     fn channels(&self, point: &[f64]) -> Option<Vec<Vec<f64>>> {
         if self.stopped() {
             return None;
@@ -171,7 +172,8 @@ impl<'a> Simulator<'a> {
         self.measured.channels.iter().map(channel).collect()
     }
 
-    /// Simulates several points on all cores; the result does not depend on the number of threads.
+    /// Returns the result of `channels` for every point, computed on all cores. It does not depend on the number of
+    /// threads.
     pub(super) fn batch(&self, points: &[Vec<f64>]) -> Vec<Option<Vec<Vec<f64>>>> {
         pool::map(points, |point| self.channels(point), &|_| ())
     }

@@ -50,7 +50,7 @@ pub struct Earthquake {
     pub observation: Vec<Statement>,
 }
 
-/// Statement on the stacks in an earthquake, such as the share that fell.
+/// Statement about the stacks in an earthquake, for example on the share that fell.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Statement {
@@ -60,7 +60,8 @@ pub struct Statement {
     pub statement: String,
     /// Publication or person that makes the statement.
     pub source: String,
-    /// How the statement is converted to numbers, such as a share with its error.
+    /// How the statement is converted to numbers, such as a share with its error; required unless the kind is
+    /// [`Kind::Unusable`].
     pub uncertainty: Option<String>,
     /// What the statement is about.
     pub kind: Kind,
@@ -73,15 +74,16 @@ pub struct Statement {
     /// Heights (numbers of levels) of the observed stacks. The proportions of stacks of each height are unknown.
     #[serde(default)]
     pub levels: Vec<usize>,
-    /// The observed share.
+    /// The observed share or, for [`Kind::Most`] and [`Kind::Few`], its approximate bound. Required for these kinds,
+    /// [`Kind::Barrels`] and [`Kind::Stacks`].
     pub value: Option<f64>,
-    /// Lower end of the 95 % interval of the observed share.
+    /// Lower end of the 95 % interval of the observed share; required for [`Kind::Barrels`] and [`Kind::Stacks`].
     pub low: Option<f64>,
-    /// Upper end of the 95 % interval of the observed share.
+    /// Upper end of the 95 % interval of the observed share; required for [`Kind::Barrels`] and [`Kind::Stacks`].
     pub high: Option<f64>,
-    /// Standard error of `value`, for the kinds [`Kind::Most`] and [`Kind::Few`].
+    /// Standard error of `value`; required for [`Kind::Most`] and [`Kind::Few`].
     pub error: Option<f64>,
-    /// Number of stacks; at least one of them fell.
+    /// Number of stacks of which at least one fell; required for [`Kind::Some`].
     pub stacks: Option<f64>,
 }
 
@@ -112,7 +114,7 @@ pub enum Likelihood {
     Near {
         /// The observed share.
         value: f64,
-        /// Standard deviation.
+        /// Standard deviation of the distribution.
         error: f64,
     },
     /// The share of the stacks that fell is at least about `value`.
@@ -131,7 +133,7 @@ pub enum Likelihood {
     },
     /// At least one of a number of stacks fell.
     One {
-        /// Number of stacks.
+        /// Number of stacks of which at least one fell.
         stacks: f64,
     },
 }

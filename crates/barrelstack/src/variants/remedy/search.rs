@@ -28,10 +28,10 @@ const BLOCK: u32 = 16;
 /// Candidates of a search, and the number of variants that are simulated for each.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    /// Number of changes of height. They come first, the highest stack first, and are tried until
-    /// one suffices.
+    /// Number of changes of height. They are the first changes of the plan, from the highest to the lowest
+    /// stack, and are tried until one suffices.
     pub(super) heights: usize,
-    /// Number of strap pretensions, from loose to tight; they follow the changes of height.
+    /// Number of strap pretensions. In the plan, they follow the changes of height, from loose to tight.
     pub(super) straps: usize,
     /// Number of variants that are simulated for each change.
     pub(super) variants: u32,
@@ -51,7 +51,8 @@ impl Plan {
         1.0 - (1.0 - LEVEL) / (self.changes() * self.planes).max(1) as f64
     }
 
-    /// Returns the block of variants that follows the first `ran` variants; variants are numbered from zero.
+    /// Returns the indices of the block of variants that follows the first `ran` variants; index 0 is the variant with
+    /// the number 1.
     fn block(&self, ran: u32) -> Range<u32> {
         let size = if ran == 0 { FIRST } else { BLOCK };
         ran..ran.saturating_add(size).min(self.variants)
@@ -122,8 +123,8 @@ pub type Verdicts = Vec<Vec<Option<bool>>>;
 /// Verdicts of a block of variants, or `Break` if the block was canceled.
 pub type Judged = ControlFlow<(), Verdicts>;
 
-/// Function that runs a block of variants of one change. Its arguments are the index of the change and the numbers of
-/// the variants, which start from zero.
+/// Function that runs a block of variants of one change. Its arguments are the index of the change and the indices of
+/// the variants; index 0 is the variant with the number 1.
 type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Judged, E> + 'a;
 
 /// Tries changes until the highest sufficient stack and the loosest sufficient straps are found.
@@ -176,8 +177,11 @@ impl<E> Search<'_, '_, E> {
         self.first_of(0..self.plan.heights)
     }
 
-    /// Finds the loosest straps that suffice, by bisection. Straps whose first block of variants already collapses too
-    /// often are rejected without further runs.
+    /// Finds the loosest straps that suffice.
+    ///
+    /// A bisection runs only the first block of variants for a pretension. If too many of these variants fail, this and
+    /// all looser pretensions are rejected. The remaining pretensions are then tried with all variants, from loose to
+    /// tight, until one suffices.
     fn straps(&mut self) -> Result<ControlFlow<()>, E> {
         let (mut from, mut to) = (self.plan.heights, self.plan.changes());
         while from < to {
@@ -191,7 +195,7 @@ impl<E> Search<'_, '_, E> {
     }
 }
 
-/// `true` if at most `100 − ENOUGH` percent of `of` variants failed.
+/// `true` if the number of failures is at most `100 − ENOUGH` percent of the number of variants.
 fn may_fail(failed: u32, of: u32) -> bool {
     u64::from(failed) * 100 <= u64::from(of) * u64::from(100 - ENOUGH)
 }
@@ -204,7 +208,7 @@ mod tests {
 
     use super::*;
 
-    /// Counts over simulated searches whose variants fail with known probabilities.
+    /// Totals over simulated searches, in which the failure probability of every change is known.
     struct Simulated {
         stated: u32,
         covered: u32,
@@ -265,7 +269,7 @@ mod tests {
         found
     }
 
-    /// Prints the table of `validation/mitigation.md`.
+    /// Checks the coverage of the intervals in simulated searches, and prints the table of `validation/mitigation.md`.
     #[test]
     #[expect(clippy::print_stdout, reason = "the rows of the table")]
     fn stated_shares_cover_the_truth_as_often_as_their_intervals_say() {

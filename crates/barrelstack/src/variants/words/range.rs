@@ -3,7 +3,7 @@
 use super::{Placed, percent};
 use crate::variants::{ShareAt, Spread};
 
-/// Largest width of the range of shares of collapses for which the sentence states that the uncertain constants matter
+/// If the range of the share of collapses is at most this wide, the sentence states that the uncertain constants matter
 /// little.
 const NARROW: f64 = 0.1;
 
