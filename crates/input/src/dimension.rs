@@ -3,8 +3,8 @@
 use std::fmt;
 use std::ops::{Add, Neg};
 
-/// A physical dimension: exponents of length, mass, time and angle, each stored as **twice its value**, because the
-/// Hertz stiffness (N/m^1.5) contains the length to a half-integer power.
+/// A physical dimension: exponents of length, mass, time and angle. Each exponent is stored as **twice its value**, so
+/// that half-integer exponents, as in the unit of the Hertz stiffness (N/m^1.5), are integers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Dimension {
     length: i8,

@@ -22,7 +22,7 @@ pub enum Place {
     },
     /// An override, written `path=value`.
     Override {
-        /// The override as given.
+        /// Text of the override.
         text: String,
     },
     /// A file as a whole.
@@ -82,13 +82,13 @@ pub enum Problem {
     /// The text is not TOML.
     #[error("this is not TOML: {message}")]
     Syntax {
-        /// Message of the parser.
+        /// Error message from the parser.
         message: String,
     },
     /// The bytes are not UTF-8 text.
     #[error("byte {offset} is not UTF-8 text; save the file as plain text in UTF-8")]
     NotText {
-        /// Offset of the first bad byte.
+        /// Offset of the first invalid byte.
         offset: usize,
     },
     /// The file is far larger than any valid file.
@@ -114,7 +114,7 @@ pub enum Problem {
         key: String,
         /// Label of the table that contains the key, such as `[run]`.
         section: String,
-        /// The most similar valid key.
+        /// The most similar valid key; `None` if no valid key is similar enough.
         nearest: Option<String>,
         /// All valid keys.
         valid: Vec<String>,
@@ -138,17 +138,17 @@ pub enum Problem {
     /// A required field is missing.
     #[error("`{field}` is missing from {section}; add {example}")]
     Missing {
-        /// Path of the field.
+        /// Key of the field.
         field: String,
         /// Label of the table that lacks the field, such as `[run]`.
         section: String,
-        /// Example of the text to add, with a valid value.
+        /// The field with a valid value, as it would be written in the file.
         example: String,
     },
     /// A value of the wrong type.
     #[error("`{field}` must be {expected}, found {found}")]
     WrongType {
-        /// Path of the field.
+        /// Dotted path of the field, such as `run.step`.
         field: String,
         /// Expected type.
         expected: String,
@@ -158,17 +158,17 @@ pub enum Problem {
     /// A number without a unit, where a quantity is required.
     #[error("`{field}` needs a unit, found {found}; write for example {example}")]
     BareNumber {
-        /// Path of the field.
+        /// Dotted path of the field, such as `run.step`.
         field: String,
         /// Value found.
         found: String,
-        /// Example of the text to write instead, with a valid value.
+        /// Suggested replacement: the same number with the SI unit.
         example: String,
     },
     /// A string that is not a quantity of the required dimension.
     #[error("`{field}`: {reason}; write for example {example}")]
     Quantity {
-        /// Path of the field.
+        /// Dotted path of the field, such as `run.step`.
         field: String,
         /// The reason why the text is rejected.
         reason: QuantityError,
@@ -178,7 +178,7 @@ pub enum Problem {
     /// A number outside its range.
     #[error("`{field}` must be {range}, found {found}")]
     OutOfRange {
-        /// Path of the field.
+        /// Dotted path of the field, such as `run.step`.
         field: String,
         /// The permitted range, in words.
         range: String,
@@ -188,11 +188,11 @@ pub enum Problem {
     /// A name that is not in the list of valid names.
     #[error("`{field}`: there is no \"{found}\"{}", suggestion(nearest.as_deref()))]
     UnknownName {
-        /// Path of the field.
+        /// Dotted path of the field, such as `run.step`.
         field: String,
         /// Name found.
         found: String,
-        /// The most similar valid name.
+        /// The most similar valid name; `None` if no valid name is similar enough.
         nearest: Option<String>,
         /// All valid names.
         valid: Vec<String>,
@@ -218,7 +218,7 @@ pub enum Problem {
     /// Values that are valid by themselves but inconsistent with each other.
     #[error("{message}")]
     Inconsistent {
-        /// The message.
+        /// Description of the inconsistency.
         message: String,
     },
 }
@@ -327,8 +327,8 @@ fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
-/// Returns the part of a line around `column` that fits into a terminal, together with the column and the width of the
-/// fault in this part. Control characters are replaced by spaces.
+/// Shortens a line for a terminal to a part of at most 100 characters that contains `column`. Returns this part, then
+/// the column and the width of the fault within the part. Control characters are replaced by spaces.
 fn window(line: &str, column: usize, width: usize) -> (String, usize, usize) {
     const BEFORE: usize = 60;
     const TOTAL: usize = 100;

@@ -106,23 +106,23 @@ pub enum Kind {
     Tables(&'static Section),
     /// A list of strings.
     Texts,
-    /// A single value whose kind depends on another field.
+    /// A value that is neither a list nor a table, and whose kind depends on another field.
     Value,
-    /// A list of single values whose kind depends on another field.
+    /// A list of values that are neither lists nor tables, and whose kind depends on another field.
     Values,
-    /// One of a list of names, or a table. A name stands for a table with a single field, whose key is given and whose
-    /// value is the name.
+    /// One of a list of names, or a table. A name stands for a table with a single field. The string in this variant
+    /// is the key of that field, and the name is its value.
     ChoiceOrTable(fn() -> Vec<&'static str>, &'static str, &'static Section),
 }
 
 /// A range of valid numbers, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Smallest value.
+    /// Lower bound.
     pub least: f64,
-    /// `true` if the smallest value is excluded.
+    /// `true` if the lower bound is excluded.
     pub above: bool,
-    /// Largest value.
+    /// Upper bound, always included.
     pub greatest: f64,
 }
 
@@ -133,9 +133,9 @@ const VAST: f64 = 1e12;
 impl Range {
     /// Any number up to 1e12 in magnitude.
     pub const ANY: Self = Self { least: -VAST, above: false, greatest: VAST };
-    /// Greater than zero.
+    /// Any number greater than zero, up to 1e12.
     pub const POSITIVE: Self = Self { least: 0.0, above: true, greatest: VAST };
-    /// Zero or greater.
+    /// Any number from zero to 1e12.
     pub const NOT_NEGATIVE: Self = Self { least: 0.0, above: false, greatest: VAST };
 
     /// Creates a range from `least` to `greatest`, both inclusive.
@@ -324,7 +324,7 @@ impl Section {
         self.fields.iter().chain(variants)
     }
 
-    /// Returns the other fields of the exclusive groups that contain the given field.
+    /// Returns the names of the fields that are mutually exclusive with the given field.
     pub fn rivals(&'static self, name: &str) -> impl Iterator<Item = &'static str> {
         let groups = self.exclusive.iter().filter(move |group| group.contains(&name));
         groups.flat_map(|group| group.iter().copied()).filter(move |rival| *rival != name)

@@ -11,7 +11,7 @@ use crate::writer::inline;
 pub struct Setting {
     /// Path as in an override, such as `interface.rack-ground.friction.coefficient`.
     pub path: String,
-    /// Value as text; quantities are in SI units.
+    /// Value, formatted as a string. Quantities are in SI units.
     pub value: String,
     /// Meaning of the field.
     pub help: &'static str,

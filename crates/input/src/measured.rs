@@ -8,7 +8,7 @@ use crate::{Dimension, Quantity};
 /// Remedy suggested for a cell that should hold a number but does not.
 const CORRECT: &str = "correct it, or remove the row (the decimal mark is a point)";
 
-/// Largest size of a file of measurements (bytes).
+/// Maximum size of a measurement file (bytes).
 const SIZE_LIMIT: usize = 64 << 20;
 
 /// A table of measurements, read from CSV with a unit in the header of each column.
@@ -56,7 +56,7 @@ pub enum TableError {
         expected: Box<str>,
         /// Content found.
         found: Box<str>,
-        /// Remedy for the user.
+        /// Suggested remedy.
         remedy: Box<str>,
     },
     /// The file is not a table of measurements, or lacks required content.
@@ -346,7 +346,7 @@ impl Table {
         self.refuse(line, Some(column), expected, found, remedy)
     }
 
-    /// Returns the text of a cell; rows are counted from 0.
+    /// Returns the text of a cell, or an empty string if there is no such cell. Rows are counted from 0.
     pub fn cell(&self, row: usize, name: &str) -> String {
         let at = self.columns.iter().position(|column| column.is(name));
         let cell = at.and_then(|at| self.rows.get(row)?.1.get(at));

@@ -43,7 +43,7 @@ pub enum QuantityError {
         unit: String,
         /// The input text, truncated to 60 characters.
         text: String,
-        /// Most similar unit.
+        /// The unit that was probably meant; `None` if there is no likely unit.
         nearest: Option<String>,
     },
     /// The unit expression is malformed.
@@ -120,8 +120,8 @@ impl Quantity {
         units.iter().map(reading).collect()
     }
 
-    /// Parses a quantity of one of the dimensions `wanted`. The unit `gal` is read as a US gallon
-    /// or as cm/s², according to these dimensions.
+    /// Parses a quantity of one of the dimensions `wanted`. These dimensions determine whether the unit `gal` is read
+    /// as a US gallon or as cm/s².
     ///
     /// ```
     /// use barrelstack_input::{Dimension, Quantity};

@@ -128,7 +128,7 @@ fn regular(of: &fs::Metadata) -> io::Result<()> {
     ))
 }
 
-/// Describes what a path names if this is neither a file nor a folder, for messages, such as `a link`.
+/// Returns the kind of a link or special file in words, such as `a named pipe`, for error messages.
 #[cfg(unix)]
 fn kind(of: &fs::Metadata) -> &'static str {
     use std::os::unix::fs::FileTypeExt as _;

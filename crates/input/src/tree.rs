@@ -93,12 +93,12 @@ pub struct Table {
 }
 
 impl Table {
-    /// Returns the entry of a key.
+    /// Returns the entry with the given key, or `None` if there is none.
     pub fn get(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
     }
 
-    /// Returns a mutable reference to the entry of a key.
+    /// Returns a mutable reference to the entry with the given key, or `None` if there is none.
     pub fn get_mut(&mut self, key: &str) -> Option<&mut Entry> {
         self.entries.iter_mut().find(|entry| entry.key == key)
     }
@@ -111,7 +111,7 @@ impl Table {
         }
     }
 
-    /// Removes the entry of a key, if present.
+    /// Removes the entry with the given key, if present.
     pub fn remove(&mut self, key: &str) {
         self.entries.retain(|entry| entry.key != key);
     }
@@ -133,7 +133,7 @@ pub struct SourceFile {
 pub struct Sources {
     /// The files; an index into this list identifies a file.
     pub files: Vec<SourceFile>,
-    /// The overrides as given, `path=value`.
+    /// The overrides, in the form `path=value`. [`Sources::adopt`] adds nested tables and lists as their path only.
     pub overrides: Vec<String>,
 }
 
@@ -156,8 +156,9 @@ impl Sources {
         }
     }
 
-    /// Gives an origin to every value of a table that was not parsed from text. Each value is recorded as
-    /// an override, written as its path and value; items of lists are numbered from 1.
+    /// Assigns an origin to every value of a table built by a program rather than parsed. Each value is recorded as an
+    /// override, `path=value`; a nested table or list is recorded as its path only. In the paths, items of lists are
+    /// numbered from 1.
     pub fn adopt(&mut self, table: &mut Table) {
         self.adopt_below(table, "");
     }

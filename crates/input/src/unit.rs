@@ -240,7 +240,7 @@ fn tokenize(text: &str) -> Result<Vec<Token>, UnitError> {
     Ok(tokens)
 }
 
-/// Largest depth of nested parentheses.
+/// Maximum depth of nested parentheses.
 const DEPTH: u32 = 8;
 
 fn product(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitError> {

@@ -55,7 +55,7 @@ impl Writer {
         found.unwrap_or_else(|| panic!("field `{name}` is written but not defined"))
     }
 
-    /// Returns the kind of value of a field.
+    /// Returns the kind of value that a field accepts, and marks the field as written.
     pub fn kind_of(&mut self, name: &'static str) -> Kind {
         self.field(name).kind
     }

@@ -97,7 +97,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Ends reading. With debug assertions, checks that every defined field has been read.
+    /// Consumes the reader. With debug assertions, checks that every defined field has been read.
     pub fn finish(self) {
         let read = self.read.borrow();
         for field in self.section.fields_of(self.variant) {
@@ -189,7 +189,7 @@ impl<'a> Reader<'a> {
         self.sources.error(self.origin, problem)
     }
 
-    /// Returns the kind of value that a field accepts.
+    /// Returns the kind of value that a field accepts, and marks the field as read.
     pub fn kind_of(&self, name: &'static str) -> Kind {
         self.field(name).kind
     }
@@ -231,7 +231,7 @@ impl<'a> Reader<'a> {
         self.field(name);
     }
 
-    /// Returns a nested table as written, for another reader.
+    /// Returns a required nested table without reading its fields, so that another reader can read them.
     pub fn table(&self, name: &'static str) -> Result<&'a Table> {
         let field = self.field(name);
         let Some(node) = self.entry(name) else { return Err(self.missing(name)) };
@@ -275,7 +275,7 @@ impl<'a> Reader<'a> {
         Ok(readers)
     }
 
-    /// Panics: reading a field as a kind that differs from its definition is a bug in this library.
+    /// Panics because a field is read as a kind that differs from its definition, which is a bug in this library.
     fn defined_otherwise(&self, name: &str) -> ! {
         panic!(
             "field `{name}` of {} is read as a kind that differs from its definition",

@@ -1,4 +1,4 @@
-//! Methods of the reader for values: quantities, numbers, names, points.
+//! Reader methods for values such as quantities, numbers, names and points.
 
 use crate::FileRef;
 use crate::dimension::Dimension;
@@ -83,7 +83,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a plain number from a node, within a range.
+    /// Reads a plain number, which must lie in `range`, from a node.
     pub fn read_number(&self, name: &str, node: &Node, range: Range) -> Result<f64> {
         let wrong = || self.wrong_type(name, Kind::Number(range), node);
         let value = match &node.value {
@@ -103,12 +103,12 @@ impl Reader<'_> {
         Ok(value)
     }
 
-    /// Reads a required integer, within the range of the field.
+    /// Reads a required integer, which must lie in the range of the field.
     pub fn integer(&self, name: &'static str) -> Result<u32> {
         self.required(name, self.optional_integer(name))
     }
 
-    /// Reads an optional integer, within the range of the field.
+    /// Reads an optional integer, which must lie in the range of the field.
     pub fn optional_integer(&self, name: &'static str) -> Result<Option<u32>> {
         self.value(name, |reader, field, node| {
             let value = reader.read_integer(name, node, field.kind)?;
@@ -116,7 +116,8 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads an integer from a node, within the range of the given kind.
+    /// Reads an integer, which must lie in the range of [`Kind::Integer`], from a node. Panics if `kind` is any other
+    /// kind.
     pub fn read_integer(&self, name: &str, node: &Node, kind: Kind) -> Result<i64> {
         let Kind::Integer(least, greatest) = kind else { self.defined_otherwise(name) };
         let Value::Integer(value) = node.value else {
@@ -274,22 +275,22 @@ impl Reader<'_> {
         self.required(name, value)
     }
 
-    /// Reads an optional point, a list of two quantities in SI units.
+    /// Reads an optional point, which is written as a list of two quantities. Returns their values in SI units.
     pub fn optional_point(&self, name: &'static str) -> Result<Option<[f64; 2]>> {
         self.list(name)
     }
 
-    /// Reads a required point, a list of two quantities in SI units.
+    /// Reads a required point, which is written as a list of two quantities. Returns their values in SI units.
     pub fn point(&self, name: &'static str) -> Result<[f64; 2]> {
         self.required(name, self.optional_point(name))
     }
 
-    /// Reads a required list of three quantities, in SI units.
+    /// Reads a required list of three quantities. Returns their values in SI units.
     pub fn triple(&self, name: &'static str) -> Result<[f64; 3]> {
         self.required(name, self.optional_triple(name))
     }
 
-    /// Reads an optional list of three quantities, in SI units.
+    /// Reads an optional list of three quantities. Returns their values in SI units.
     pub fn optional_triple(&self, name: &'static str) -> Result<Option<[f64; 3]>> {
         self.list(name)
     }
@@ -303,7 +304,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a required list of points, in SI units.
+    /// Reads a required list of points. Returns their coordinates in SI units.
     pub fn points(&self, name: &'static str) -> Result<Vec<[f64; 2]>> {
         let value = self.value(name, |reader, field, node| {
             let Kind::Points(dimension) = field.kind else { reader.defined_otherwise(name) };
@@ -360,7 +361,7 @@ impl Reader<'_> {
         Ok(point)
     }
 
-    /// Reads a quantity from a node, within a range.
+    /// Reads a quantity, whose SI value must lie in `range`, from a node.
     pub fn read_quantity(
         &self,
         name: &str,
