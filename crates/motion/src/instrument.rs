@@ -20,8 +20,8 @@ pub struct Instrument {
     pub channel: String,
     /// Start and end of the period for which the metadata are valid; `None` if unlimited.
     pub epoch: (Option<Utc>, Option<Utc>),
-    /// Sensitivity in counts per m/s², or per m/s or m for another quantity. Negative if positive
-    /// counts mean motion opposite to [`Instrument::direction`].
+    /// Sensitivity in counts per SI unit of the measured quantity: m/s², m/s or m. Negative if
+    /// positive counts mean motion opposite to [`Instrument::direction`].
     pub sensitivity: f64,
     /// Quantity measured by the instrument, if known.
     pub quantity: Option<Quantity>,

@@ -6,8 +6,8 @@ use crate::record::{Channel, Record, Stage};
 
 /// Shortest overlap of two parts (s).
 const SHORTEST_OVERLAP: f64 = 1.0;
-/// Largest root-mean-square difference between two parts in their overlap, divided by the
-/// root-mean-square motion.
+/// Largest root-mean-square difference between two parts in their overlap, divided by the root mean
+/// square of their samples.
 const LARGEST_MISFIT: f64 = 0.05;
 
 impl Record {
@@ -99,8 +99,9 @@ impl Record {
         }
     }
 
-    /// Returns a reason, found in the headers, why two files are not components of one record;
-    /// `None` if there is no such reason.
+    /// Compares the headers of two files. Returns the first difference in site, format, event or stage
+    /// because of which they cannot be components of one record; `None` if there is no such
+    /// difference.
     pub fn unlike(&self, other: &Self) -> Option<String> {
         let one = self;
         let files = format!("{} and {}", one.file, other.file);
@@ -261,8 +262,8 @@ fn find_overlap(first: &Channel, second: &Channel) -> Option<usize> {
     best.map(|(_, samples)| samples)
 }
 
-/// Returns the root-mean-square difference of two series after removing their means, divided by the
-/// root-mean-square motion.
+/// Removes the means of two series, and returns the root-mean-square difference of the series
+/// divided by the root mean square of their samples.
 fn misfit(one: &[f64], other: &[f64]) -> f64 {
     let (mean_one, mean_other) = (math::mean(one), math::mean(other));
     let (mut difference, mut size) = (0.0, 0.0);

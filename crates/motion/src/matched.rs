@@ -26,32 +26,32 @@ pub struct Matched {
     /// Largest relative misfit at any period from the shortest to the longest matched period, on a grid of
     /// 1080 periods per decade.
     pub misfit: f64,
-    /// Ranges of periods with a misfit beyond the tolerance; empty if the tolerance is met.
+    /// Ranges of periods in which the misfit exceeds the tolerance; empty if the tolerance is met.
     pub missed: Vec<Missed>,
     /// Number of rounds.
     pub rounds: usize,
     /// The requested method.
     pub chosen: MatchMethod,
-    /// Method of the first rounds that led to the motion: the requested method, or the frequency
-    /// domain if wavelets alone missed the tolerance and a restart in the frequency domain came
-    /// closer.
+    /// Method with which the attempt that produced the motion began. This is the requested method, or
+    /// the frequency domain if wavelets alone missed the tolerance and a restart in the frequency
+    /// domain came closer.
     pub first: MatchMethod,
 }
 
-/// Misfit of two components matched together to a target spectrum.
+/// Outcome of matching two components together to a target spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MatchedPair {
     /// Largest relative misfit; see [`Matched::misfit`].
     pub misfit: f64,
-    /// Ranges of periods with a misfit beyond the tolerance; see [`Matched::missed`].
+    /// Ranges of periods in which the misfit exceeds the tolerance; see [`Matched::missed`].
     pub missed: Vec<Missed>,
     /// Number of rounds.
     pub rounds: usize,
 }
 
 impl Matched {
-    /// Describes the missed ranges, such as "by +5.6 % at 0.41 to 0.43 s, ..."; of many ranges,
-    /// only the worst are listed.
+    /// Describes the missed ranges, such as "by +5.6 % at 0.41 to 0.43 s, ...". If there are many
+    /// ranges, the worst are listed and the others are counted.
     pub fn missed_in_words(&self) -> String {
         missed_in_words(&self.missed)
     }
@@ -68,8 +68,8 @@ impl Matched {
     }
 }
 
-/// Describes missed ranges, such as "by +5.6 % at 0.41 to 0.43 s, ..."; of many ranges, only the
-/// worst are listed.
+/// Describes missed ranges, such as "by +5.6 % at 0.41 to 0.43 s, ...". If there are many ranges, the
+/// worst are listed and the others are counted.
 pub fn missed_in_words(all: &[Missed]) -> String {
     let words = |missed: &Missed| {
         let (from, to) = (format!("{:.3}", missed.from), format!("{:.3}", missed.to));

@@ -16,8 +16,8 @@ use crate::wavelets;
 /// Method of spectral matching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchMethod {
-    /// Multiplies the Fourier amplitudes repeatedly by the ratio of target to spectrum, and keeps
-    /// the phases.
+    /// Multiplies the Fourier amplitudes repeatedly by the ratio of target to response spectrum,
+    /// and keeps the phases.
     ///
     /// This method is simple and converges fast at first, but changes the character of the whole
     /// motion. Scaling the amplitudes alone stalls at a misfit of 5 to 9 %; wavelets then remove
@@ -27,8 +27,9 @@ pub enum MatchMethod {
     /// Abrahamson 2010, Earthquake Spectra 26:601-617).
     ///
     /// This method is slower, but keeps the character of the motion. If the match stalls, further
-    /// rounds start from the best motion and keep all other extrema below the target. If that also
-    /// fails, the match restarts in the frequency domain, and the provenance says so.
+    /// rounds start from the best motion. They correct the peak responses without raising other
+    /// extrema of the responses above the target. If that also fails, the match restarts in the
+    /// frequency domain, and the provenance says so.
     Time,
 }
 
@@ -43,8 +44,9 @@ pub struct Matching {
     pub longest: f64,
     /// Largest accepted relative misfit at any matched period.
     pub tolerance: f64,
-    /// Maximum number of consecutive rounds of one method. If one method stalls, the other method
-    /// continues.
+    /// Maximum number of rounds of one stage of the match. The stages are: changing the Fourier
+    /// amplitudes, adding wavelets, and making smaller corrections with wavelets. If a stage ends
+    /// before the tolerance is met, the next stage follows.
     pub rounds: usize,
 }
 
@@ -223,8 +225,8 @@ pub(crate) fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
     (motion.time_step() / parts, fine)
 }
 
-/// Returns the number of parts into which a step (s) must be divided to have [`STEPS_A_PERIOD`]
-/// steps per period.
+/// Returns the number of parts into which `time_step` (s) must be divided, so that an oscillation
+/// with the period `shortest` (s) has at least [`STEPS_A_PERIOD`] steps per period.
 fn parts(time_step: f64, shortest: f64) -> f64 {
     (STEPS_A_PERIOD * time_step / shortest * (1.0 - 1e-9)).ceil().max(1.0)
 }
@@ -323,7 +325,7 @@ impl<'a> Work<'a> {
     }
 
     /// Returns approximate pseudo-accelerations (m/s²) at ascending periods, accurate enough for
-    /// the search.
+    /// the rounds of a match.
     fn nearly(&self, periods: &[f64], acceleration: &[f64]) -> Vec<f64> {
         self.layers(acceleration).pseudo_accelerations(periods, self.damping)
     }
@@ -404,8 +406,8 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Brings the final velocity and displacement to zero, without a filter, because wavelets cause
-    /// no drift.
+    /// Brings the final velocity and displacement to zero. Unlike [`Work::steady`], this function
+    /// applies no filter, because wavelets cause no drift.
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         let ends = Processing { high_pass: None, ..self.chain.clone() };
         Ok(ends.apply(self.time_step, acceleration, 0.0)?.acceleration)
@@ -416,11 +418,11 @@ impl<'a> Work<'a> {
         Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
-    /// Runs the methods in turn. Returns the best motion and the method of the first rounds that led
-    /// to it ([`Matched::first`]).
+    /// Runs the methods in turn. Returns the best motion and the method with which the attempt that
+    /// produced it began ([`Matched::first`]).
     ///
-    /// If the time domain is requested, wavelets are added to the start motion. If they miss the
-    /// tolerance, or the frequency domain is requested, every further attempt starts in the
+    /// If the time domain is requested, the first attempt adds wavelets to `start`. If it misses the
+    /// tolerance, or if the frequency domain is requested, every further attempt begins in the
     /// frequency domain with one of [`AMPLITUDE_STEPS`], and then adds wavelets.
     fn alternate(
         &self,

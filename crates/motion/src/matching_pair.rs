@@ -190,9 +190,9 @@ impl Search<'_> {
         Ok([self.work.close(&sum[0])?, self.work.close(&sum[1])?])
     }
 
-    /// Returns the required changes of the response at a period. For `RotD100`, there is one
-    /// change, of the largest response. For `RotD50`, there are two changes, because the median is
-    /// the mean of the two middle responses.
+    /// Returns the changes of the response at a period that remove the fraction `share` of the
+    /// misfit. For `RotD100`, only the largest response must change. For `RotD50`, the two middle
+    /// responses must change, because their mean is the median.
     fn aims(&self, period: f64, pair: &Pair, share: f64) -> Vec<Aim> {
         let histories = histories(self.work, period, pair);
         let peak = rotated(&histories);
@@ -244,10 +244,10 @@ impl Search<'_> {
 struct Aim {
     period: f64,
     sample: usize,
-    /// Direction in which the response is measured.
+    /// Unit vector of the direction in which the response is measured.
     direction: [f64; 2],
-    /// Direction of the wavelet, which is the direction of the response at the time of the peak
-    /// response.
+    /// Unit vector along which the wavelet acts. This is the direction of the response at the time of
+    /// its peak along [`Aim::direction`].
     push: [f64; 2],
     /// Required change of the response in [`Aim::direction`] (m/s²).
     change: f64,

@@ -2,11 +2,12 @@
 
 use crate::record::{Channel, Record};
 
-/// Short words that are part of names, not abbreviations.
+/// Words of two letters that are converted to title case. Other words of one or two letters are
+/// treated as codes, which remain in capitals.
 const SHORT: [&str; 5] = ["EL", "LA", "LE", "DE", "OF"];
 
 impl Record {
-    /// Returns the customary name of the event, such as "Northridge 1994", or `None` if the header
+    /// Returns the display name of the event, such as "Northridge 1994", or `None` if the header
     /// states no event.
     ///
     /// ```
@@ -36,7 +37,7 @@ impl Record {
         })
     }
 
-    /// Returns the customary name of the station, or `None` if the header states no station.
+    /// Returns the display name of the station, or `None` if the header states no station.
     pub fn station_name(&self) -> Option<String> {
         let text = self.station.split_whitespace().collect::<Vec<_>>().join(" ");
         // Remove a network code before the name.
@@ -86,7 +87,7 @@ fn year(word: &str) -> Option<u32> {
     }
 }
 
-/// Converts words in capitals to the capitalization of names.
+/// Converts a text in capitals to title case; a text with lowercase letters is unchanged.
 fn softened(text: &str) -> String {
     if text.chars().any(char::is_lowercase) {
         return text.to_owned();

@@ -62,7 +62,7 @@ pub struct Processing {
 }
 
 impl Processing {
-    /// Returns a chain without any processing; the record is used as published.
+    /// Returns settings that apply no processing; the record is used as published.
     pub fn none() -> Self {
         Self {
             mean: MeanRemoval::Keep,
@@ -76,7 +76,7 @@ impl Processing {
         }
     }
 
-    /// Returns the full chain for raw records: pre-event mean, 2 % taper, fourth-order zero-phase
+    /// Returns the full processing for raw records: pre-event mean, 2 % taper, fourth-order zero-phase
     /// high-pass at 0.1 Hz with pads kept, final velocity and displacement brought to zero.
     pub fn raw() -> Self {
         Self {
@@ -103,7 +103,7 @@ impl Processing {
         }
     }
 
-    /// Returns `true` if the chain does not change the record.
+    /// Returns `true` if the processing does not change the record.
     pub fn is_none(&self) -> bool {
         self.mean == MeanRemoval::Keep
             && !self.detrend
@@ -144,13 +144,13 @@ impl Processing {
         MotionError::require(high < low, what, format!("below the low-pass corner, {low} Hz"), high)
     }
 
-    /// Returns the high-pass corner (Hz) used for a record of this length; a wave longer than the
-    /// record cannot be resolved.
+    /// Returns the high-pass corner (Hz) used for a record of this length. The corner is at least the
+    /// reciprocal of the duration, because the record does not resolve longer periods.
     fn high_pass_used(&self, time_step: f64, samples: usize) -> Option<f64> {
         self.high_pass.map(|corner| corner.max(1.0 / (time_step * samples as f64)))
     }
 
-    /// Applies the chain to accelerations (m/s²) with step `time_step` (s).
+    /// Applies the processing to accelerations (m/s²) with step `time_step` (s).
     ///
     /// # Errors
     /// If a setting is out of range for the record.
@@ -297,7 +297,8 @@ pub struct Residuals {
 }
 
 impl Residuals {
-    /// Integrates accelerations (m/s²) and compares the final values with the peaks.
+    /// Integrates accelerations (m/s²) from `initial_velocity` (m/s), and returns the absolute final
+    /// velocity and displacement divided by their peaks.
     pub fn of(time_step: f64, acceleration: &[f64], initial_velocity: f64) -> Self {
         let (v, d) = integrate(time_step, acceleration, initial_velocity);
         let ratio = |values: &[f64]| {

@@ -8,7 +8,7 @@ use crate::response::{Step, check_oscillator};
 /// Number of directions in half a turn.
 pub(crate) const DIRECTIONS: usize = 180;
 
-/// Peaks over all horizontal directions, one degree apart.
+/// Smallest, median and largest peak over all horizontal directions, one degree apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RotatedPeak {
     /// Median over all directions (`RotD50`).

@@ -33,8 +33,8 @@ impl Site {
         self
     }
 
-    /// Returns a reason, found in the headers, why two channels are not at the same site; `None` if
-    /// there is no such reason.
+    /// Compares the sites of two channels. Returns the first difference in station, sensor or
+    /// coordinates; `None` if the sites agree as far as they are stated.
     pub fn differs(&self, other: &Self) -> Option<String> {
         let words =
             [("station", &self.station, &other.station), ("sensor", &self.sensor, &other.sensor)];

@@ -22,13 +22,12 @@ pub(super) fn quantity(
     Some(hints.recorded().or(metadata).unwrap_or_else(by_code))
 }
 
-/// Converts counts or values of a channel to accelerations, and removes the mean if the channel is a raw
-/// record of an accelerometer.
+/// Converts `scaled`, the samples of a channel in SI units of the recorded quantity, to accelerations
+/// (m/s²).
 ///
-/// `scaled` contains SI values of the recorded quantity. The quantity is taken from the caller,
-/// else from the metadata, else from the channel code. Velocities and displacements are
-/// differentiated if the caller or the metadata state the quantity, but refused if only the channel
-/// code states it.
+/// The quantity is taken from the caller, else from the metadata, else from the channel code. The
+/// mean of recorded accelerations is removed. Velocities and displacements are differentiated if the
+/// caller or the metadata state the quantity, but refused if only the channel code states it.
 pub(super) fn as_acceleration(
     source: &Source<'_>,
     record: &mut Record,

@@ -161,9 +161,12 @@ impl<'a> Source<'a> {
         Err(self.cut(format!("{lines} header lines and data"), format!("{found} lines")))
     }
 
-    /// Returns the line after the end of a channel, which is marked "/&" or "end of data" after
-    /// optional blank lines. The mark may be missing if the line contains `next`, the text with
-    /// which the next channel begins.
+    /// Checks that the first nonblank line from `line` on ends a channel, and returns the line at
+    /// which reading continues.
+    ///
+    /// If the line is marked "/&" or "end of data", the line after it is returned. If it contains
+    /// `next`, the text with which the next channel begins, the line itself is returned. If only
+    /// blank lines follow, the number of lines in the file is returned.
     pub(crate) fn end_of_channel(&self, line: usize, next: &str) -> Result<usize, ReadError> {
         let blank = |line: &usize| !self.raw(*line).trim_ascii().is_empty();
         let Some(line) = (line..self.lines.len()).find(blank) else { return Ok(self.lines.len()) };
@@ -291,7 +294,7 @@ impl<'a> Source<'a> {
         self.damaged((line, column), "a number", found, remedy)
     }
 
-    /// Returns an error about a truncated file, placed after its last character.
+    /// Returns an error about a truncated file, located after the last character of the file.
     pub(crate) fn cut(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         let last = self.lines.len().saturating_sub(1);
         self.damaged(
@@ -428,8 +431,8 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Appends the numbers of a line, which are separated by blanks, tabs, commas or semicolons, or
-    /// touch each other.
+    /// Appends the numbers of a line to `values`. The numbers are separated by blanks, tabs, commas or
+    /// semicolons, or follow each other without a separator, as in `-.123E-02-.456E-02`.
     pub(crate) fn tokens(
         &self,
         line: usize,

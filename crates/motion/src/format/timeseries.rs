@@ -17,7 +17,7 @@ pub(crate) const FORMAT: Format =
     Format { name: "timeseries", title: "TSPAIR and SLIST text (FDSN)", sniff, read };
 
 const MARK: &str = "TIMESERIES ";
-/// Largest valid number, in counts or in the stated unit.
+/// Largest accepted magnitude of a sample, in counts or in the stated unit.
 const LIMIT: f64 = 1e12;
 
 fn sniff(source: &Source<'_>) -> bool {

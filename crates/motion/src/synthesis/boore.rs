@@ -54,7 +54,7 @@ pub struct BooreSource {
     pub path: Path,
 }
 
-/// Position of the peak of the time window, as a fraction of the duration.
+/// Position of the peak of the time window, as a fraction of the length of the window.
 const WINDOW_PEAK: f64 = 0.2;
 /// Value of the time window at the end, relative to its peak.
 const WINDOW_END: f64 = 0.05;
@@ -159,7 +159,7 @@ impl BooreSource {
     /// If a parameter is out of range.
     pub fn acceleration(&self, time_step: f64, seed: u64) -> Result<Vec<f64>, MotionError> {
         self.check()?;
-        // The window falls to a twentieth of its peak at the duration; twice the duration includes
+        // The window falls to a twentieth of its peak at `window_length`; twice this length includes
         // its tail.
         let window_length = 2.0 * self.strong_duration();
         let steps = step_count(2.0 * window_length, time_step)?;
@@ -202,7 +202,8 @@ impl BooreSource {
     }
 }
 
-/// Returns the window of Saragoni and Hart, `a x^b exp(-c x)`, with its peak of 1 at `WINDOW_PEAK`.
+/// Returns the time window of Saragoni and Hart, `a x^b exp(-c x)`, with its peak of 1 at
+/// `x = WINDOW_PEAK`. `x` is the time divided by the length of the window.
 fn window(x: f64) -> f64 {
     let peak = WINDOW_PEAK;
     let b = -peak * math::ln(WINDOW_END) / (1.0 + peak * (math::ln(peak) - 1.0));

@@ -146,12 +146,16 @@ impl CloughPenzien {
     }
 
     /// Returns the two-sided spectral density of the stationary acceleration (m²/s³) at `w`
-    /// (rad/s). The time step limits the resolved frequencies to π divided by the step.
+    /// (rad/s).
+    ///
+    /// `S0` is chosen so that the integral of the density gives the variance `rms²`. The integral
+    /// covers the frequencies that `time_step` (s) resolves, which are at most π/`time_step`.
     pub fn density(&self, w: f64, time_step: f64) -> f64 {
         self.rms * self.rms / self.unit_variance(time_step) * self.shape(w)
     }
 
-    /// Returns the variance for `S0 = 1` over the frequencies resolved by the time step.
+    /// Returns the variance of the stationary acceleration for `S0 = 1`, from the frequencies up to
+    /// π/`time_step`.
     fn unit_variance(&self, time_step: f64) -> f64 {
         let top = PI / time_step;
         let n = 20_000;
