@@ -180,7 +180,7 @@ fn horizontals_are_turned_to_a_fault_and_to_the_fastest_direction() {
         refused(&["process", text(file), "--rotate", axes, "-o", text(&out)])
     };
     for axes in ["strike", "strike:", "strike:nan", "strike:north", "122", "VMAX2"] {
-        assert!(says(axes, &file).contains("expected vmax, or a strike"), "{axes}");
+        assert!(says(axes, &file).contains("expected `vmax`, or a strike"), "{axes}");
     }
     for (head, found) in [("time (s),90", "\"90\""), ("time (s),H1,H2", "\"H1\", \"H2\"")] {
         let lone = folder.path().join("lone.csv");
@@ -304,6 +304,6 @@ fn a_damaged_stationxml_beside_a_record_is_named_with_what_is_wrong() {
     assert_eq!(refused(&["info", text(&file)]), alone);
     fs::write(folder.path().join("made.xml"), "<FDSNStationXML><Network code=\"XX\">").unwrap();
     let said = refused(&["info", text(&file)]);
-    assert!(said.contains("made.xml") && said.contains("no other file in its folder"), "{said}");
+    assert!(said.contains("made.xml") && said.contains("no other file in the same folder"), "{said}");
     assert!(said.contains("expected a sensitivity"), "{said}");
 }
