@@ -35,7 +35,7 @@ pub struct MeasuredComponent {
     /// FIV3 at 1 s (m/s).
     pub fiv3: f64,
     /// Classification of the velocity pulse by the method of Baker (2007); `None` for a vertical
-    /// component.
+    /// component, and for a motion that cannot be classified.
     pub pulse: Option<ClassifiedPulse>,
     /// Pseudo-accelerations (m/s²) at 5 % damping, one per period.
     pub spectrum: Vec<f64>,
@@ -50,7 +50,8 @@ pub struct MeasuredPair {
     pub largest: [f64; 2],
     /// `RotD50` and `RotD100` of the pseudo-accelerations (m/s²) at 5 % damping, one per period.
     pub spectrum: Vec<RotatedPeak>,
-    /// Classification of the velocity pulse by the method of Shahi and Baker (2014).
+    /// Classification of the velocity pulse by the method of Shahi and Baker (2014); `None` if the
+    /// motion is shorter than the shortest pulse, or if the velocity of a component is zero.
     pub pulse: Option<ClassifiedPulse>,
 }
 

@@ -2,11 +2,11 @@
 
 use crate::math;
 
-/// Acceleration at which strong motion has certainly begun, as a fraction of the peak acceleration.
+/// Fraction of the peak acceleration; strong motion begins at the first sample that reaches it.
 const SURE: f64 = 0.2;
-/// Time by which each search for the arrival extends beyond the previous estimate, as a fraction of the time before the
-/// strong motion. For the first search, the previous estimate is the beginning of the strong motion; for the second
-/// search, it is the result of the first search.
+/// Length of the samples that each search for the arrival adds after its end, as a fraction of the time before the
+/// strong motion. The first search ends at the beginning of the strong motion, the second search at the result of the
+/// first search.
 const BEHIND: f64 = 0.1;
 
 /// Returns the time (s) from the first sample to the first arrival; 0 if the shaking starts with
