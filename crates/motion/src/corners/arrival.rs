@@ -4,9 +4,9 @@ use crate::math;
 
 /// Fraction of the peak acceleration; strong motion begins at the first sample that reaches it.
 const SURE: f64 = 0.2;
-/// Length of the samples that each search for the arrival adds after its end, as a fraction of the time before the
-/// strong motion. The first search ends at the beginning of the strong motion, the second search at the result of the
-/// first search.
+/// Time by which each search for the arrival is extended, as a fraction of the time before the strong motion. Without
+/// the extension, the first search would end at the beginning of the strong motion, and the second search at the result
+/// of the first.
 const BEHIND: f64 = 0.1;
 
 /// Returns the time (s) from the first sample to the first arrival; 0 if the shaking starts with
