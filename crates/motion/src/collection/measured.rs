@@ -58,13 +58,13 @@ pub struct MeasuredPair {
 /// Intensity measures of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// The first two components that are not vertical, in file order.
+    /// The first two components that are not vertical, in file order; fewer if the record has fewer.
     pub horizontals: Vec<MeasuredComponent>,
     /// The first vertical component, if there is one.
     pub vertical: Option<MeasuredComponent>,
     /// Joint measures of both horizontal components, if they form a pair.
     pub pair: Option<MeasuredPair>,
-    /// Reason why the horizontal components do not form a pair.
+    /// Reason why the horizontal components do not form a pair; `None` if they do.
     pub no_pair: Option<String>,
 }
 

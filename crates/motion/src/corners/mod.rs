@@ -81,7 +81,7 @@ impl Corners {
     }
 }
 
-/// Signal-to-noise ratio of a channel as a function of frequency.
+/// Frequencies (Hz), and the signal-to-noise ratio of a channel at each of them.
 struct Spectra {
     frequency: Vec<f64>,
     /// Signal-to-noise ratio at each frequency, as defined by [`noise_corners`].
@@ -216,7 +216,8 @@ impl Spectra {
         None
     }
 
-    /// Returns the smallest signal-to-noise ratio in the frequency range of the criterion.
+    /// Returns the smallest signal-to-noise ratio in the frequency range of the criterion; infinite
+    /// if the spectra have no frequency in this range.
     fn least(&self, criterion: &NoiseCriterion) -> f64 {
         let inside = self.frequency.iter().zip(&self.ratio);
         inside

@@ -2,7 +2,7 @@
 //! mm/s², mm/s and mm.
 //!
 //! A component has 16 text lines, 10 lines of ten numbers, each 8 characters wide, then blocks of
-//! data in the same columns; V2A files include the pads of the filter. Spec: GeoNet, "Strong motion
+//! data in the same columns; V2A files include the filter pads. Spec: GeoNet, "Strong motion
 //! data, file formats" (GNS Science).
 
 use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};

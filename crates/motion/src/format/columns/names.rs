@@ -207,8 +207,8 @@ const OTHER_UNITS: &[&str] = &[
     "%",
 ];
 
-/// Returns `true` for a unit of motion, time or another quantity, and for a placeholder that stands
-/// for no unit.
+/// Returns `true` for a unit of motion, time or another quantity, and for the placeholders `-` and
+/// `#`, which mean that a column has no unit.
 fn is_any_unit(text: &str) -> bool {
     is_unit(text)
         || ["-", "#"].contains(&text)

@@ -119,7 +119,7 @@ pub(super) const SAMPLING_KEYS: &[&str] = &[
     "increment",
 ];
 
-/// Keywords of [`SAMPLING_KEYS`] that may be followed by a number without a unit.
+/// Keywords in [`SAMPLING_KEYS`] that may be followed by a number without a unit.
 pub(super) const BARE: &[&str] =
     &["sampling", "muestreo", "campionamento", "amostragem", "abtastung", "delta"];
 
