@@ -75,7 +75,7 @@ fn read_component(
         .to_owned();
     let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
     // Time zero is given as year and month, day and hour, minute and milliseconds. A corrected
-    // record begins earlier, with the pad of the filter.
+    // record begins earlier, with the filter pad.
     #[expect(clippy::cast_possible_truncation, reason = "saturates, and is checked then")]
     let whole = |row: usize, column: usize| cell(row, column) as i64;
     let zero = Utc::new(
