@@ -7,7 +7,8 @@ use crate::sampled::integrate;
 use crate::site::Site;
 use crate::utc::Utc;
 
-/// Number of samples on each side of an interpolated point, for shifts by a fraction of a time step.
+/// Number of samples used for interpolation on each side of a point. Shifts by a fraction of a time
+/// step need interpolation.
 const REACH: usize = 32;
 /// Shifts below this fraction of a time step are ignored, because they are smaller than the errors of
 /// recorder clocks.

@@ -29,7 +29,7 @@ mod tape {
 const MOST: usize = 50_000;
 /// Largest size of a decompressed tar archive (bytes).
 const LARGEST_TAR: u64 = 256 << 20;
-/// Largest depth of nested archives; the outermost archive has depth 1.
+/// Maximum nesting depth of archives that are opened; the outermost archive has depth 1.
 const DEEPEST: usize = 2;
 /// File name extensions of archives, in lower case.
 const ENDINGS: [&str; 4] = [".zip", ".tar", ".tgz", ".tar.gz"];

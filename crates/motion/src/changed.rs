@@ -58,7 +58,9 @@ impl Record {
         Ok(out)
     }
 
-    /// Multiplies all channels by one factor. The caller adds the purpose to the notes.
+    /// Multiplies all channels by one factor.
+    ///
+    /// This method adds no note, because only the caller knows the purpose of the factor.
     #[must_use]
     pub fn multiplied(&self, factor: f64) -> Self {
         let mut out = self.clone();
@@ -228,7 +230,7 @@ impl Record {
     }
 }
 
-/// Describes by how much a match reduced the time step (s); `None` if the step is unchanged.
+/// Describes by how much spectral matching reduced the time step (s); `None` if the step is unchanged.
 fn cut(before: f64, after: f64) -> Option<String> {
     (before != after).then(|| {
         format!(

@@ -7,7 +7,7 @@ use crate::site::Site;
 /// Mean radius of the Earth (km).
 const EARTH: f64 = 6371.0;
 
-/// Magnitude and location of an earthquake, as stated in a header; unstated fields are empty.
+/// Magnitude and location of an earthquake, as stated in a header. Unstated values are `None` or empty strings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Earthquake {
     /// Identifier in the agency's catalog.

@@ -155,7 +155,8 @@ impl Flatfile {
     }
 }
 
-/// Returns the record sequence number in a name such as `RSN995_NORTHR_PEL360.AT2`.
+/// Returns the record sequence number in a file name such as `RSN995_NORTHR_PEL360.AT2`; `None` if
+/// the name does not begin with `RSN` and a number.
 pub fn record_sequence_number(path: &str) -> Option<u64> {
     let file = path.rsplit(['/', '\\']).next()?;
     let digits =

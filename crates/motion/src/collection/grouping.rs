@@ -15,17 +15,22 @@ pub struct RecordFiles {
 
 /// Groups paths (with `/` between folders) into records, sorted by name.
 ///
-/// Files of one folder belong to the same record if their names differ only in the component:
+/// Files of one folder belong to the same record if their names differ only in the component. Each
+/// kind of name has its own rule:
 ///
-/// - `RSN995_NORTHR_PEL090.AT2` and `RSN995_NORTHR_PEL-UP.AT2` by their record sequence number,
-///   other names ending in `.AT2` by the part before an azimuth, `-E` or `-UP`;
-/// - `AOM0011801241951.EW`, `.NS` and `.UD`; the borehole (`.EW1`) and the surface (`.EW2`) are
-///   separate records;
-/// - names with a SEED channel code such as `HNE` between dots, dashes or underscores;
-/// - other names that end, before their extension, in `_E`, `_N` and `_U` (or `_Z`), as AFAD names
-///   its files, or in `_EW`, `_NS` and `_UD`. The separator may also be a dash or a dot; after a
-///   digit, it may be missing, as in the names of CSMNC;
-/// - names that end in `.000`, `.090` and `.ver`, as the Broadband Platform names its files.
+/// - Names that end in `.AT2` and contain a record sequence number, such as
+///   `RSN995_NORTHR_PEL090.AT2` and `RSN995_NORTHR_PEL-UP.AT2`, are grouped by this number. Other
+///   names that end in `.AT2` are grouped by the part before the component, such as an azimuth, `-E`
+///   or `-UP`.
+/// - Names such as `AOM0011801241951.EW` are grouped by the part before `.EW`, `.NS` or `.UD`. The
+///   borehole (`.EW1`) and the surface (`.EW2`) are separate records.
+/// - Names that contain a SEED channel code such as `HNE`, between dots, dashes or underscores, may
+///   differ in the last letter of this code.
+/// - Other names may differ in the letters before their extension: `_E`, `_N` and `_U` (or `_Z`), as
+///   AFAD names its files, or `_EW`, `_NS` and `_UD`. The separator may also be a dash or a dot;
+///   between a digit and two letters, it may be missing, as in the names of CSMNC.
+/// - Names that end in `.000`, `.090` and `.ver`, as the Broadband Platform names its files, are
+///   grouped by the part before this ending.
 ///
 /// Any other file is a record of its own. [`crate::Record::gather`] checks whether the channels
 /// really belong together.
@@ -65,8 +70,7 @@ pub fn group_files(paths: &[String]) -> Vec<RecordFiles> {
     records
 }
 
-/// Returns the part of a file name that all components of a record share, and the name of the
-/// record.
+/// Returns the key of a file, which is equal for all files of a record, and the name of the record.
 fn key(file: &str) -> (String, String) {
     let stem = file_stem(file);
     let ending = file.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_uppercase();

@@ -35,7 +35,7 @@ pub struct MeasuredComponent {
     /// FIV3 at 1 s (m/s).
     pub fiv3: f64,
     /// Classification of the velocity pulse by the method of Baker (2007); `None` for a vertical
-    /// component.
+    /// component, and for a motion that cannot be classified.
     pub pulse: Option<ClassifiedPulse>,
     /// Pseudo-accelerations (m/s²) at 5 % damping, one per period.
     pub spectrum: Vec<f64>,
@@ -50,20 +50,21 @@ pub struct MeasuredPair {
     pub largest: [f64; 2],
     /// `RotD50` and `RotD100` of the pseudo-accelerations (m/s²) at 5 % damping, one per period.
     pub spectrum: Vec<RotatedPeak>,
-    /// Classification of the velocity pulse by the method of Shahi and Baker (2014).
+    /// Classification of the velocity pulse by the method of Shahi and Baker (2014); `None` if the
+    /// motion is shorter than the shortest pulse, or if the velocity of a component is zero.
     pub pulse: Option<ClassifiedPulse>,
 }
 
 /// Intensity measures of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// The first two components that are not vertical, in file order.
+    /// The first two components that are not vertical, in file order; fewer if the record has fewer.
     pub horizontals: Vec<MeasuredComponent>,
     /// The first vertical component, if there is one.
     pub vertical: Option<MeasuredComponent>,
     /// Joint measures of both horizontal components, if they form a pair.
     pub pair: Option<MeasuredPair>,
-    /// Reason why the horizontal components do not form a pair.
+    /// Reason why the horizontal components do not form a pair; `None` if they do.
     pub no_pair: Option<String>,
 }
 

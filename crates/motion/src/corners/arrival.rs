@@ -2,11 +2,11 @@
 
 use crate::math;
 
-/// Acceleration at which strong motion has certainly begun, as a fraction of the peak acceleration.
+/// Fraction of the peak acceleration; strong motion begins at the first sample that reaches it.
 const SURE: f64 = 0.2;
-/// Time by which each search for the arrival extends beyond the previous estimate, as a fraction of the time before the
-/// strong motion. For the first search, the previous estimate is the beginning of the strong motion; for the second
-/// search, it is the result of the first search.
+/// Time by which each search for the arrival is extended, as a fraction of the time before the strong motion. Without
+/// the extension, the first search would end at the beginning of the strong motion, and the second search at the result
+/// of the first.
 const BEHIND: f64 = 0.1;
 
 /// Returns the time (s) from the first sample to the first arrival; 0 if the shaking starts with

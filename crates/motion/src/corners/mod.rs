@@ -13,9 +13,9 @@ use crate::record::{Channel, Record};
 use arrival::arrival;
 use smooth::konno_ohmachi;
 
-/// Shortest noise (s) from which corners can be determined.
+/// Minimum duration (s) of the noise from which corners can be determined.
 const SHORTEST_NOISE: f64 = 1.0;
-/// Shortest shaking (s) from which corners can be determined.
+/// Minimum duration (s) of the shaking from which corners can be determined.
 const SHORTEST_SHAKING: f64 = 5.0;
 /// Length of the taper at each end of a series, as a fraction of the length of the series. The
 /// noise and the shaking are tapered separately.
@@ -58,7 +58,8 @@ pub struct Corners {
 }
 
 impl Corners {
-    /// Describes the corners, the signal-to-noise ratios between them and the noise, for messages and notes.
+    /// Describes the corners, the duration of the noise, and the smallest signal-to-noise ratios, for messages and
+    /// notes.
     pub fn sentence(&self, criterion: &NoiseCriterion) -> String {
         let unknown = 1.0 / self.arrival;
         format!(
@@ -80,10 +81,10 @@ impl Corners {
     }
 }
 
-/// Signal-to-noise ratio of a channel as a function of frequency.
+/// Frequencies (Hz), and the signal-to-noise ratio of a channel at each of them.
 struct Spectra {
     frequency: Vec<f64>,
-    /// Signal-to-noise ratio; see [`noise_corners`].
+    /// Signal-to-noise ratio at each frequency, as defined by [`noise_corners`].
     ratio: Vec<f64>,
 }
 
@@ -215,7 +216,8 @@ impl Spectra {
         None
     }
 
-    /// Returns the smallest signal-to-noise ratio in the frequency range of the criterion.
+    /// Returns the smallest signal-to-noise ratio in the frequency range of the criterion; infinite
+    /// if the spectra have no frequency in this range.
     fn least(&self, criterion: &NoiseCriterion) -> f64 {
         let inside = self.frequency.iter().zip(&self.ratio);
         inside

@@ -103,7 +103,8 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Returns the unit that some programs write in the title, after the station and the component.
+/// Returns the unit that some programs write in the title, after the station and the component;
+/// `None` if the title states no unit.
 fn stated_unit(source: &Source<'_>) -> Option<MotionUnit> {
     let text = source.text(0).to_lowercase();
     let words = text.split([' ', '\t', '(', ')', '[', ']', ',']).filter(|word| !word.is_empty());

@@ -58,7 +58,7 @@ pub(crate) const USC: Format = Format {
 
 /// Number of lines that are searched for the integers of a header.
 const FIRST_LINES: usize = 40;
-/// Minimum length of a line of integers (five characters each).
+/// Minimum length of a line of integers: eight integers of five characters each.
 const INTEGERS: usize = 40;
 
 /// Returns `true` if a header line contains integers in fixed columns (16I5), as in all files of

@@ -11,7 +11,7 @@ use crate::site::Site;
 use crate::units::MotionUnit;
 use crate::utc::Utc;
 
-/// The samples of one channel, as in the file.
+/// The samples of one channel, before their conversion to accelerations.
 pub(super) struct Samples {
     pub(super) codes: SeedName,
     pub(super) start: Option<Utc>,
@@ -27,7 +27,7 @@ pub(super) struct Samples {
 /// Unit of samples, as stated in the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Unit {
-    /// Counts of a digitizer.
+    /// Digitizer counts.
     Counts,
     /// A unit of motion.
     Motion(MotionUnit),

@@ -146,8 +146,8 @@ fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
     (fine && !time.iter().enumerate().any(strays)).then_some(step)
 }
 
-/// Returns candidates for the time step: round numbers near the mean step, then the mean step
-/// itself.
+/// Returns candidates for the time step: round numbers that differ from the mean step by at most
+/// about `relative` times the mean step, then the mean step itself.
 fn candidates(mean: f64, relative: f64) -> impl Iterator<Item = f64> {
     let rate = (1.0 / mean).round();
     let decimal = (mean * 1e5).round() / 1e5;

@@ -2,7 +2,7 @@
 //! mm/s², mm/s and mm.
 //!
 //! A component has 16 text lines, 10 lines of ten numbers, each 8 characters wide, then blocks of
-//! data in the same columns; V2A files include the pads of the filter. Spec: GeoNet, "Strong motion
+//! data in the same columns; V2A files include the filter pads. Spec: GeoNet, "Strong motion
 //! data, file formats" (GNS Science).
 
 use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
@@ -75,7 +75,7 @@ fn read_component(
         .to_owned();
     let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
     // Time zero is given as year and month, day and hour, minute and milliseconds. A corrected
-    // record begins earlier, with the pad of the filter.
+    // record begins earlier, with the filter pad.
     #[expect(clippy::cast_possible_truncation, reason = "saturates, and is checked then")]
     let whole = |row: usize, column: usize| cell(row, column) as i64;
     let zero = Utc::new(

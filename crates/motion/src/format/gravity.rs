@@ -12,7 +12,8 @@ const TOLERANCE: f64 = 0.05;
 const LARGEST_MEAN: f64 = 0.5 * STANDARD_GRAVITY;
 /// Largest mean (m/s²) of a ground motion whose values all have the same sign.
 const LARGEST_ONE_SIDED: f64 = 0.05 * STANDARD_GRAVITY;
-/// Shortest record (s) whose mean is checked; analytic pulses are shorter.
+/// Minimum duration (s) of a record whose mean is checked. Analytic pulses are shorter, so that their
+/// mean is not checked.
 const SHORTEST: f64 = 2.0;
 /// If gravity is spread over several axes, the mean of an axis is subtracted only if its magnitude exceeds this value
 /// (m/s²).

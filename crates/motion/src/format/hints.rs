@@ -102,8 +102,8 @@ impl<'a> Hints<'a> {
         self.contradiction.borrow().clone()
     }
 
-    /// Returns a statement that no metadata match a channel, for the error about a missing
-    /// sensitivity.
+    /// Formats, for the error about a missing sensitivity, the finding that no metadata match a
+    /// channel.
     pub(super) fn no_instrument(&self, seed: &SeedName, start: Option<Utc>) -> String {
         let count = self.options.instruments.len();
         if count == 0 {

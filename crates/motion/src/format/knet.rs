@@ -119,8 +119,11 @@ fn scale(text: &str) -> Option<f64> {
     (factor.is_finite() && factor > 0.0).then_some(factor)
 }
 
-/// Parses a direction. In K-NET files, it is a name; in KiK-net files, it is a number, 1 to 3 in
-/// the borehole and 4 to 6 at the surface.
+/// Parses a direction. Returns the name of the channel, the direction, and `true` if the number
+/// identifies a borehole sensor.
+///
+/// In K-NET files, the direction is a name. In KiK-net files, it is a number: 1 to 3 in the
+/// borehole, 4 to 6 at the surface.
 fn direction(text: &str) -> (String, Direction, bool) {
     let (name, borehole) = match text.trim() {
         "1" => ("N-S", true),

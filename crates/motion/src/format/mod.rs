@@ -265,7 +265,7 @@ fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadEr
     format.read_source(source, options)
 }
 
-/// Refuses bytes that cannot be of any format.
+/// Refuses content that no format allows: an empty file, or text in UTF-16.
 fn check_bytes(source: &Source<'_>) -> Result<(), ReadError> {
     let (expected, found, remedy) = if source.bytes.trim_ascii().is_empty() {
         ("a strong-motion file", "an empty file", "get the file again from its source")
@@ -474,9 +474,9 @@ const FILLED: usize = 9;
 
 /// Returns how many of the `found` values are used if the header states their number.
 ///
-/// All values are used if there is one value less than stated, or if there are up to two more,
-/// because the numbers in published headers are wrong by this much. If there are up to [`FILLED`]
-/// more, the last line was filled up, and only the stated number of values is used.
+/// All values are used if there is one value fewer than stated, or if there are one or two more,
+/// because published headers contain such errors. If there are up to [`FILLED`] more, the last line
+/// was filled up, and only the stated number of values is used.
 ///
 /// # Errors
 /// If the difference is larger: the file is truncated, or its header belongs to another file.

@@ -92,7 +92,8 @@ pub(crate) fn resolution(text: &str) -> f64 {
     crate::math::powf(10.0, f64::from(power))
 }
 
-/// Returns `true` if a string is a placeholder that programs print instead of a number.
+/// Returns `true` if a string is a placeholder that programs print instead of a number, such as
+/// `NaN`, `null` or `#N/A`.
 pub(super) fn is_no_number(text: &str) -> bool {
     let lower = text.trim_matches(['+', '-', '"']).to_ascii_lowercase();
     let printed =

@@ -14,7 +14,7 @@ use crate::record::Record;
 ///
 /// The worst case is a text file with one digit per line, which needs sixteen times its size in memory
 /// while it is read: 192 MB for a file of this size, and 1 GB for a file of 64 MB. For comparison,
-/// an hour of one component at 100 Hz, written as text, has a quarter of this size.
+/// an hour of one component at 100 Hz, written as text, is a quarter as large.
 pub(crate) const LARGEST: u64 = 12 << 20;
 
 /// Reads the record in a packed file; `None` if the file is not packed.

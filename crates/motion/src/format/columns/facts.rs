@@ -121,8 +121,8 @@ impl Facts {
     }
 }
 
-/// Returns the text after a key. The key must be a separate word that is not preceded by a word of
-/// `OTHER_MEANING`.
+/// Returns the text after a key. The key must be a separate word that is not preceded by a word in
+/// [`OTHER_MEANING`], and not followed by `/` or `per`.
 fn behind<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     text.match_indices(key).find_map(|(at, _)| {
         let (before, rest) = (&text[..at], &text[at + key.len()..]);

@@ -151,9 +151,9 @@ fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
 
 /// Returns the first word that is not a known unit, if the line is otherwise a row of units.
 ///
-/// More than half of the words must be units. If exactly half of the words are units, the line is a row of units only
-/// if its separator does not occur in prose, if it does not contain "unit", and if the other words are not all names of
-/// quantities, as in `time, g`.
+/// A line is a row of units if more than half of its words are units. If exactly half of the words are units, three
+/// more conditions apply: the separator does not occur in prose, the line does not contain "unit", and the other words
+/// are not all names of quantities, as in `time, g`.
 fn damaged_unit(text: &str, width: usize) -> Option<String> {
     splits(plain(text)).into_iter().find_map(|(separated, parts)| {
         if parts.len() != width || parts.iter().any(String::is_empty) {
@@ -207,8 +207,8 @@ const OTHER_UNITS: &[&str] = &[
     "%",
 ];
 
-/// Returns `true` for a unit of motion, time or another quantity, and for a placeholder that stands
-/// for no unit.
+/// Returns `true` for a unit of motion, time or another quantity, and for the placeholders `-` and
+/// `#`, which mean that a column has no unit.
 fn is_any_unit(text: &str) -> bool {
     is_unit(text)
         || ["-", "#"].contains(&text)

@@ -10,7 +10,7 @@ const ROWS: usize = 200;
 const RISING: f64 = 0.95;
 
 /// Returns `true` if an unnamed column contains times or row numbers: it increases almost
-/// everywhere, and no step is ten times the mean step.
+/// everywhere, and every step is smaller than ten times the mean step.
 ///
 /// Times that repeat or decrease in places are included; they are refused later with a specific
 /// error.
@@ -44,8 +44,10 @@ pub(super) fn is_even(column: &[f64]) -> bool {
     column.len() >= EVEN_ROWS && column.iter().enumerate().map(off).all(|off| off < mean.abs())
 }
 
-/// Returns `true` if a second time column increases in proportion to the first, within one step. If
-/// `ratio` is given, the columns must have this ratio.
+/// Returns `true` if a second time column increases in proportion to the first. Deviations must be
+/// smaller than the mean step of the second column.
+///
+/// `ratio` is the factor of proportionality; `None` if it follows from the first and last rows.
 pub(super) fn rise_alike(first: &[f64], other: &[f64], ratio: Option<f64>) -> bool {
     let last = first.len() - 1;
     let ratio = ratio.unwrap_or((other[last] - other[0]) / (first[last] - first[0]));
@@ -157,8 +159,8 @@ pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
     })
 }
 
-/// Returns one flag per column: `true` if the column contains the lengths of vectors whose components are other
-/// columns, within 1 %. These are all other columns, or two or three adjacent columns.
+/// Returns one flag per column: `true` if, in every row, the value of the column is the length of a vector, within
+/// 1 %. The components of the vector are the values in all other columns, or in two or three adjacent ones of them.
 pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
     let is_length = |at: usize| {
         let of = &columns[at];

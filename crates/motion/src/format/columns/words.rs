@@ -119,11 +119,11 @@ pub(super) const SAMPLING_KEYS: &[&str] = &[
     "increment",
 ];
 
-/// Keywords of [`SAMPLING_KEYS`] that may be followed by a number without a unit.
+/// Keywords in [`SAMPLING_KEYS`] that may be followed by a number without a unit.
 pub(super) const BARE: &[&str] =
     &["sampling", "muestreo", "campionamento", "amostragem", "abtastung", "delta"];
 
-/// Words that identify a time on the same line, such as `5 ms`, as the time step.
+/// Parts of words that identify a time on the same line, such as `5 ms`, as the time step.
 pub(super) const BESIDE_STEPS: &[&str] = &["interval", "step", "increment", "spac", "sampl"];
 
 /// Keywords for the number of samples.
@@ -227,8 +227,8 @@ pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
 pub(super) const DISPLACEMENTS: &[&str] =
     &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
 
-/// Returns `true` for a unit of raw digitizer output, such as counts or volts. Values in such a unit
-/// must be converted by a sensitivity.
+/// Returns `true` for a unit of raw digitizer output, such as counts or volts. The conversion of such
+/// values to accelerations needs a sensitivity.
 pub(super) fn is_of_instrument(unit: &str) -> bool {
     const UNITS: &[&str] = &[
         "v", "mv", "uv", "volt", "volts", "lsb", "lsbs", "count", "counts", "cts", "adc", "digit",
