@@ -21,7 +21,8 @@ pub struct Replicates {
 }
 
 impl Replicates {
-    /// Returns the confidence interval of a function of the curve, from bias-corrected percentiles (Efron 1987).
+    /// Returns the confidence interval of the quantity that `of` computes from a curve. The interval consists of
+    /// bias-corrected percentiles (Efron 1987).
     pub fn interval(&self, level: f64, of: impl Fn(&Lognormal) -> f64) -> Interval {
         let mut values: Vec<f64> = self.curves.iter().map(&of).collect();
         values.sort_by(f64::total_cmp);

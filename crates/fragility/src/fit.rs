@@ -217,9 +217,10 @@ pub(crate) fn fixed_likelihood(evidence: &[Evidence], beta: f64) -> Likelihood<1
     likelihood(evidence, None, -ln(beta), |u| Score { offset: u / beta, row: [1.0] })
 }
 
-/// Returns the likelihood of evidence; the function `score` gives `z` as a function of `ln x`.
+/// Returns the likelihood of evidence. The function `score` returns the normal score `z` for a given `ln x`.
 ///
-/// `ln_slope` is the logarithm of the slope `1/β` if the slope is not a parameter.
+/// `slope` is the index of the parameter that is the slope `1/β`. If the slope is not a parameter, `slope` is `None`
+/// and `ln_slope` is the logarithm of `1/β`; otherwise `ln_slope` is 0.
 pub(crate) fn likelihood<const N: usize>(
     evidence: &[Evidence],
     slope: Option<usize>,

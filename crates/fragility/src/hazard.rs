@@ -122,7 +122,7 @@ impl Hazard {
         Ok(Self { rows: rows.to_vec() })
     }
 
-    /// Returns the rows of the table.
+    /// Returns the rows of the table: pairs of an intensity and its annual rate of exceedance (1/year).
     pub fn rows(&self) -> &[(f64, f64)] {
         &self.rows
     }
@@ -151,8 +151,8 @@ impl Hazard {
         Some(x0 * exp(ln(x1 / x0) * ln(rate / r0) / ln(r1 / r0)))
     }
 
-    /// Integrates an effect, given by `of` as a function of the intensity, between two intensities within the table.
-    /// The effect is weighted with the density of the annual rate over the intensity.
+    /// Returns the integral of `of(x) |dλ(x)|` between two intensities, where `λ(x)` is the annual rate at which the
+    /// intensity `x` is exceeded. Intensities outside the table contribute nothing.
     fn integral(&self, from: f64, to: f64, of: &impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for pair in self.rows.windows(2) {
@@ -203,8 +203,8 @@ impl Hazard {
         }
     }
 
-    /// Returns the contributions to the annual rate of an event, or to the expected annual consequence, of the ranges
-    /// between consecutive intensities `edges` (deaggregation).
+    /// Returns the contribution of each range of intensities to the annual rate of an event, or to the expected annual
+    /// consequence (deaggregation). Each range lies between two consecutive `edges`.
     ///
     /// `consequence` returns the probability of the event, or the expected consequence, at an intensity. Intensities
     /// outside the table contribute nothing.

@@ -11,8 +11,9 @@ pub struct Ida {
 }
 
 impl Ida {
-    /// Creates a curve from runs in any order. Runs are omitted if their intensity is not positive and
-    /// finite, or if their demand is NaN.
+    /// Creates a curve from pairs `(intensity, demand)` of runs in any order. Runs are omitted if their intensity is
+    /// not positive and finite, or if their demand is NaN. Of several runs at one intensity, the one with the largest
+    /// demand is kept.
     pub fn new(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let sound = |(x, d): &(f64, f64)| x.is_finite() && *x > 0.0 && !d.is_nan();
         let mut points: Vec<(f64, f64)> = points.into_iter().filter(sound).collect();
@@ -27,7 +28,8 @@ impl Ida {
         Self { points }
     }
 
-    /// Returns the runs, in ascending order of intensity.
+    /// Returns the pairs `(intensity, demand)` of the runs, in ascending order of intensity. An infinite demand stands
+    /// for collapse.
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points
     }

@@ -22,8 +22,10 @@ pub struct Index {
     pub total_interval: Interval,
 }
 
-/// Computes the first-order and the total index of every input from blocks `[f(A), f(B), f(A with input 1 of
-/// B), …]`.
+/// Computes the first-order and the total index of every input from blocks of results
+/// `[f(A), f(B), f(A₁B), f(A₂B), …]`.
+///
+/// In each block, `A` and `B` are two samples of all inputs, and `AᵢB` is `A` with the input `i` of `B`.
 ///
 /// ```text
 /// first  = mean(f(B) (f(AᵢB) − f(A))) / V        Saltelli et al. 2010, table 2 (b)
@@ -32,8 +34,8 @@ pub struct Index {
 ///
 /// `V` is the variance of all `f(A)` and `f(B)`. All results are centered on the mean of all `f(A)` and `f(B)`.
 /// Intervals come from the delete-one jackknife over blocks and from Student's t distribution, with the number of
-/// blocks minus one as degrees of freedom. For the total index, an interval is computed on the linear and on the
-/// logarithmic scale, and the wider one is returned.
+/// blocks minus one as degrees of freedom. For the total index, the upper bound is also computed on the
+/// logarithmic scale, and the larger of the two upper bounds is used.
 ///
 /// If an input changes the result in at most half of the blocks, the largest changes may be too rare to occur in any
 /// block. The intervals therefore allow for a small proportion of such blocks, given by [`unobserved`]. They are

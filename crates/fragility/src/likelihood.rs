@@ -22,8 +22,9 @@ impl<const N: usize> Score<N> {
 /// An observation of a standard normal variable `Z`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Observation<const N: usize> {
-    /// `Z = z`. The second value is subtracted from the log-density: `−ln ∂z/∂x = ln x − ln b`, where `b` is the
-    /// slope of `z` as a function of `ln x`. If the slope is a parameter, the second value is `ln x`.
+    /// `Z = z`. The log-density of the capacity `x` is `ln φ(z) + ln ∂z/∂x`, where `∂z/∂x = b/x` and `b` is the slope
+    /// of `z` as a function of `ln x`. The second value is subtracted from `ln φ(z)`. It is `ln x − ln b` if `b` is
+    /// given. If `b` is a parameter, the second value is `ln x`, and [`Likelihood::term`] adds `ln b`.
     At(Score<N>, f64),
     /// `Z` is at most `z`.
     Below(Score<N>),
@@ -71,7 +72,7 @@ pub(crate) struct Top<const N: usize> {
     pub shape: Shape<N>,
 }
 
-/// Magnitude of the gradient, in standard errors, below which the gradient counts as zero.
+/// Newton decrement `√(gᵀ (−H)⁻¹ g)` below which the gradient `g` counts as zero; `H` is the Hessian.
 const FLAT: f64 = 1e-9;
 
 /// Maximum number of Newton steps; usually five to ten suffice.
@@ -225,8 +226,8 @@ pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Op
     Some(b)
 }
 
-/// Returns the covariance of the parameters, which is the inverse of the negative Hessian; `None` if the negative
-/// Hessian is not positive definite.
+/// Returns the covariance matrix of the parameters, which is the inverse of `−H`, where `H` is the Hessian `curvature`;
+/// `None` if `−H` is not positive definite.
 pub(crate) fn covariance<const N: usize>(curvature: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     let information = negated(curvature);
     let mut inverse = [[0.0; N]; N];

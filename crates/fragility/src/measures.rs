@@ -14,9 +14,10 @@ pub struct Measured {
     /// under the ROC curve). It is 0.5 if the measure does not discriminate and 1 if it discriminates
     /// perfectly.
     pub concordance: f64,
-    /// p-value of the sufficiency test: the probability that a second quantity without further information
-    /// would improve the fit at least as much as the tested quantity does. A small value means that the first
-    /// measure is not sufficient. `None` if the second quantity follows from the first measure.
+    /// p-value of the sufficiency test: the probability that a second quantity without further information would
+    /// improve the fit at least as much as the tested quantity does. A small value means that the first measure is not
+    /// sufficient. `None` if there is no second quantity with one positive value for each case, or if this quantity is
+    /// a power of the first measure, up to a constant factor.
     pub sufficiency: Option<f64>,
 }
 
@@ -103,7 +104,9 @@ pub struct Demanded {
     /// which the demand depends only weakly (Padgett et al. 2008).
     pub proficiency: f64,
     /// p-value of the sufficiency test for a second quantity: the probability of a correlation between `ε` and this
-    /// quantity that is at least as strong as the observed one, if `ε` does not depend on the quantity.
+    /// quantity that is at least as strong as the observed one, if `ε` does not depend on the quantity. `None` if
+    /// there is no second quantity with one positive value for each case, if this quantity is a power of the intensity
+    /// measure up to a constant factor, or if there are only three cases.
     pub sufficiency: Option<f64>,
     /// Number of cases.
     pub cases: usize,
@@ -112,7 +115,7 @@ pub struct Demanded {
 /// Regresses the demands of standing cases on an intensity measure, and the residuals on a second quantity.
 ///
 /// Each case is a pair `(intensity, demand)` of positive numbers. Returns `None` for fewer than three cases,
-/// if all intensities are equal, and if a number is not positive.
+/// if all intensities are equal, or if one of these numbers is not positive and finite.
 pub fn demand_against(cases: &[(f64, f64)], second: Option<&[f64]>) -> Option<Demanded> {
     let sound = |x: f64| x.is_finite() && x > 0.0;
     if cases.len() < 3 || !cases.iter().all(|(x, d)| sound(*x) && sound(*d)) {

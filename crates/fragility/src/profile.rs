@@ -45,8 +45,8 @@ impl<'a> Profile<'a> {
         Ok((profile, found))
     }
 
-    /// Returns how far the profile log-likelihood lies below its value at the ends of the confidence interval. The
-    /// result is negative inside the interval.
+    /// Returns the drop of the profile log-likelihood below its maximum, minus the drop at the ends of the confidence
+    /// interval. The result is negative inside the interval.
     ///
     /// The profile log-likelihood is the largest log-likelihood of all curves that have the normal score `score` at
     /// `ln x = place`.

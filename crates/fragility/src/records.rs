@@ -75,8 +75,8 @@ impl LeaveOneOut {
         self.spread(|curve| ln(curve.dispersion), |curve| ln(curve.dispersion)).sqrt()
     }
 
-    /// Returns the confidence interval of a function of the curve. The errors of the function must be nearly symmetric,
-    /// as for the logarithm of a rate.
+    /// Returns the confidence interval of the quantity that `of` computes from a curve. The errors of this quantity
+    /// must be nearly symmetric, as for the logarithm of a rate.
     pub fn interval(&self, level: f64, of: impl Fn(&Lognormal) -> f64) -> Interval {
         let here = of(&self.fitted);
         let half = self.reach(level) * self.spread(&of, &of).sqrt();

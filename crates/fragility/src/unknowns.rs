@@ -1,4 +1,5 @@
-//! Share of failures as a function of constants that have not been measured.
+//! Regression of the share of failures on constants of the structure that have not been measured, such as friction
+//! coefficients.
 
 use crate::math::{exp, ln, normal, normal_quantile, quantile};
 use crate::proportion::Interval;
@@ -10,8 +11,7 @@ pub const FEWEST_RUNS: usize = 16;
 /// Number of draws of the constants over which a share is averaged.
 const AVERAGED: usize = 32;
 
-/// Step between the samples that [`Conditional::difference`] and [`Conditional::at`] use: every sixth of the kept
-/// samples.
+/// Stride through the kept samples: [`Conditional::difference`] and [`Conditional::at`] use every sixth sample.
 const THINNED: usize = 6;
 
 /// Number of discarded (burn-in) samples and number of kept samples of the posterior distribution.
@@ -23,14 +23,14 @@ const FREEDOM: f64 = 3.0;
 
 /// Scale of the prior distribution of the coefficients `g` (the two halves of the runs) and `aⱼ` (the constants).
 ///
-/// With a scale of 0.6, the share changes from 16 to 84 % when a typical constant changes from −1.6 to +1.6
-/// of its standard deviations.
+/// A typical constant has a coefficient as large as the scale. With a scale of 0.6, the share then changes from 16 to
+/// 84 % when this constant changes from −1.6 to +1.6 of its standard deviations.
 const PRIOR: f64 = 0.6;
 
 /// Scale of the prior distribution of `cᵢⱼ`, the coefficients of the squares and products of the constants.
 const PRIOR_SECOND: f64 = 0.2;
 
-/// Scale of the prior distribution of the standard deviation between motions.
+/// Scale of the prior distribution of `σ`, the standard deviation of the coefficients of the motions.
 const PRIOR_GROUPS: f64 = 0.6;
 
 /// Standard deviation of the normal prior distribution of `b₁`, the coefficient of the logarithm of the intensity.
@@ -51,8 +51,8 @@ const PRIOR_MIDDLE: f64 = 2.5;
 pub struct DrawnRun {
     /// Values of the unknown constants, as standard normal deviates.
     pub deviates: Vec<f64>,
-    /// `true` if the run belongs to the second half of the runs. The halves may differ on purpose, for
-    /// example in the component of the motion.
+    /// `true` if the run belongs to the second half of the runs. The halves may differ on purpose, for example if the
+    /// horizontal components of the motion are exchanged in the second half.
     pub second_half: bool,
     /// `true` if the structure failed in the run.
     pub failed: bool,
@@ -73,9 +73,9 @@ pub struct DrawnRun {
 /// distribution is sampled by the method of Albert and Chib (1993).
 #[derive(Clone, Debug)]
 pub struct Conditional {
-    /// Coefficients `g`, `b`, `aⱼ`, `cᵢⱼ` of each sample.
+    /// For each sample, the coefficients `g`, `b`, `aⱼ` and `cᵢⱼ`.
     samples: Vec<Vec<f64>>,
-    /// Values of the constants that are drawn with each sample, as standard normal deviates.
+    /// For each sample, the values of the constants that are drawn with it, as standard normal deviates.
     points: Vec<Vec<f64>>,
     /// Correlations of the deviates.
     correlations: Vec<Vec<f64>>,
@@ -246,13 +246,13 @@ pub enum Shape {
 /// b(x)        = b₀ + b₁ ln(x/x₀) + bₓ
 /// ```
 ///
-/// `bₓ` is the departure of the share at the intensity `x` from the curve; it is 0 for [`Shape::Lognormal`]. `σ` is the
-/// standard deviation between motions: the runs under one motion have a common coefficient in the regression, so that
-/// they do not count as independent. The effects of the constants are the same at all intensities. The method is that
-/// of [`conditional`].
+/// `bₓ` is the departure of the share at the intensity `x` from the curve; it is 0 for [`Shape::Lognormal`]. In the
+/// regression, the runs under one motion have a common coefficient, so that they do not count as independent. `σ` is
+/// the standard deviation of these coefficients. The effects of the constants are the same at all intensities. The
+/// method is that of [`conditional`].
 #[derive(Clone, Debug)]
 pub struct Intensities {
-    /// Coefficients `b`, `aⱼ`, `cᵢⱼ` and `σ` of each sample.
+    /// For each sample, the coefficients `b₀`, `b₁`, `bₓ` (one for each of `levels`), `aⱼ` and `cᵢⱼ`, and finally `σ`.
     samples: Vec<Vec<f64>>,
     /// Intensities at which the share may depart from the curve.
     levels: Vec<f64>,
@@ -264,7 +264,8 @@ pub struct Intensities {
 }
 
 /// Fits the share of failures as a function of intensity and of the unknown constants. Returns `None` if there are
-/// fewer than [`FEWEST_RUNS`] runs, if there are no constants, or if runs differ in the number of their constants.
+/// fewer than [`FEWEST_RUNS`] runs, if there are no constants, if runs differ in the number of their constants, or if
+/// an intensity is not positive.
 ///
 /// `uniform` returns random numbers between 0 (inclusive) and 1 (exclusive).
 pub fn shaken(
@@ -409,8 +410,8 @@ impl Conditional {
         Self::new(self.samples, correlations)
     }
 
-    /// Returns the values of all constants in `point`, with one constant set to `deviate`. Each other constant changes
-    /// by the change of that constant, multiplied by the correlation of the two.
+    /// Returns the values of all constants in `point`, but with one constant set to `deviate`. If this shifts that
+    /// constant by `Δ`, each other constant is shifted by `ρ Δ`, where `ρ` is the correlation of the two constants.
     fn fixed(&self, point: &[f64], unknown: usize, deviate: f64) -> Vec<f64> {
         let change = deviate - point[unknown];
         let moved = point.iter().zip(&self.correlations[unknown]);

@@ -40,8 +40,8 @@ pub trait Linear<R>:
 
 /// Rigid motion in two or three dimensions: the types and operations on which the physics is generic.
 pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
-    /// `true` if bodies often consist of several solids, so that the kinematics of two bodies are reused for several
-    /// contact pairs.
+    /// `true` if bodies often consist of several solids. The relative kinematics of a body and a target surface are
+    /// then reused for the next contact pair of the same body and surface.
     const SOLIDS_SHARE: bool;
 
     /// The scalar.
@@ -76,7 +76,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         + Sync
         + Lanewise<Single = <Self::Single as Space>::Inertia>
         + 'static;
-    /// A displacement (m), velocity (m/s) or force (N) in the plane tangent to a contact.
+    /// A displacement (m), velocity (m/s) or force (N) in the tangent plane of a contact.
     type Tangent: Linear<Self::Real> + Lanewise<Single = <Self::Single as Space>::Tangent>;
     /// Data stored with a tangent, so that the tangent can be transported along a curved surface: the normal in three
     /// dimensions; nothing in the plane, where a tangent is a scalar.
@@ -96,10 +96,10 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         + Sync
         + Lanewise<Single = <Self::Single as Space>::Damping>
         + 'static;
-    /// Shapes whose surface can be a contact target.
+    /// Type of the surfaces that can be the target of a contact.
     type Surface: crate::shape::Surface<Self> + Lanewise<Single = <Self::Single as Space>::Surface>;
-    /// Convex solids that touch with their deepest points; an empty type in the plane, where boundaries have round
-    /// pieces instead.
+    /// Type of the convex solids that touch a target surface at their deepest point, or along a whole line or face. In
+    /// the plane, this type has no values, since planar convex boundaries touch with their round pieces instead.
     type Whole: crate::shape::Whole<Self> + Lanewise<Single = <Self::Single as Space>::Whole>;
 
     /// Returns the rotation from the body frame to the inertial frame for an orientation.
@@ -118,7 +118,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn rotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
     /// Returns the velocity, due to a spin, of a point at the vector `arm` from the axis.
     fn velocity_at(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
-    /// Returns an upper bound of the length of a vector. The bound is cheaper to compute than the length, and close to
+    /// Returns an upper bound on the length of a vector. The bound is cheaper to compute than the length, and close to
     /// the length for most vectors.
     fn length_bound(vector: Self::Vector) -> Self::Real;
     /// Returns the first coordinate of a vector; bodies are sorted by this coordinate to find neighbors.
@@ -133,10 +133,10 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         spin: Self::Spin,
         time: Self::Real,
     ) -> Self::Orientation;
-    /// Returns the rotation (rad) from one orientation to a nearby one, as the spin that causes this rotation in one
-    /// unit of time.
+    /// Returns the rotation (rad) from one orientation to a nearby one, as the spin (rad/s) that causes this
+    /// rotation in one second.
     fn turn_between(from: Self::Orientation, to: Self::Orientation) -> Self::Spin;
-    /// Returns the angle (rad) between two orientations, or an upper bound of this angle.
+    /// Returns the angle (rad) between two orientations, or an upper bound on this angle.
     fn angle_between(a: Self::Orientation, b: Self::Orientation) -> Self::Real;
     /// Returns the angular acceleration due to a moment alone; [`Space::coast`] and [`Space::momentum`] account for the
     /// torque-free part.
@@ -145,8 +145,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         rotation: Self::Rotation,
         moment: Self::Spin,
     ) -> Self::Spin;
-    /// Returns the rotational quantity that is conserved without moments, up to a constant factor: the angular momentum
-    /// in three dimensions, the spin itself in the plane.
+    /// Returns the rotational quantity that is conserved if no moment acts: in three dimensions the angular momentum,
+    /// and in the plane the spin, which differs from the angular momentum only by a constant factor.
     fn momentum(inertia: Self::Inertia, rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
     /// Returns the spin of a body, given its [`Space::momentum`].
     fn spin_of(
@@ -161,10 +161,10 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         spin: Self::Spin,
         time: Self::Real,
     ) -> (Self::Orientation, Self::Spin);
-    /// Returns the rate of a rotation vector whose current value is `turned`, for a body with a spin.
+    /// Returns the time derivative of the rotation vector `turned` of a body that rotates with the given spin.
     ///
     /// In three dimensions rotations are not additive, so the integral of a spin over time is not a rotation vector.
-    /// The integral of the rate returned here is a rotation vector.
+    /// The integral of the derivative returned here is a rotation vector.
     fn turn_rate(turned: Self::Spin, spin: Self::Spin) -> Self::Spin;
     /// Returns the smallest principal moment of inertia (kg·m²) in one lane.
     fn least_inertia(inertia: Self::Inertia, lane: usize) -> f64;
@@ -178,8 +178,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn tangential(vector: Self::Vector, normal: Self::Vector) -> Self::Tangent;
     /// Converts a tangent to a vector, for a surface with this unit normal.
     fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
-    /// Returns the data stored with the tangents of a surface, given its unit normal in a rotated frame and the
-    /// rotation from that frame to the inertial frame.
+    /// Returns the data that are stored with a tangent to a surface. `normal` is the unit normal of the surface in a
+    /// rotated frame, and `rotation` is the rotation from that frame to the inertial frame.
     fn tangent_plane(rotation: Self::Rotation, normal: Self::Vector) -> Self::TangentPlane;
     /// Transports a tangent from one tangent plane into another.
     fn carry(
@@ -191,16 +191,20 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn rotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
     /// Transforms a tangent from the inertial frame to a rotated frame.
     fn unrotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
-    /// Returns the rate of change (m/s) of the displacement of a tangential spring, in the inertial frame, due to its
-    /// rotation about the normal. The displacement rotates with the mean spin of both bodies. `spins` contains the spin
-    /// (rad/s) of one body and the spin of the other body relative to the first, in a rotated frame.
+    /// Returns the rate (m/s, in the inertial frame) at which the displacement of a tangential spring changes because
+    /// the spring rotates about the contact normal.
+    ///
+    /// The spring rotates with the mean spin of the two bodies. `spins` contains the spin (rad/s) of one body, and the
+    /// spin of the other body relative to it. `rotation` is the rotation from the frame of `spins` to the inertial
+    /// frame.
     fn stick_turn(
         displacement: Self::Tangent,
         plane: Self::TangentPlane,
         rotation: Self::Rotation,
         spins: [Self::Spin; 2],
     ) -> Self::Tangent;
-    /// Adds the rate returned by [`Space::stick_turn`] to a tangent, in lanes where the mask is set.
+    /// Adds `turn`, the result of [`Space::stick_turn`], to the slip rate `tangent` (m/s), in lanes where the mask is
+    /// set.
     fn add_turn(
         mask: <Self::Real as Real>::Mask,
         tangent: Self::Tangent,
@@ -292,8 +296,8 @@ impl<S: Space> Pose<S> {
         (Self { position, orientation }, Twist { linear: twist.linear, angular })
     }
 
-    /// Returns the displacement (m and rad) to a nearby pose, as the twist that causes this displacement in one unit of
-    /// time.
+    /// Returns the displacement (m and rad) to a nearby pose, as the twist that causes this displacement in one
+    /// second.
     #[inline(always)]
     #[must_use]
     pub fn way_to(self, other: Self) -> Twist<S> {

@@ -6,8 +6,8 @@ use crate::solid::{Rounded, Solid};
 
 /// Motion in three dimensions, with a number or a bundle of lanes as its scalar.
 ///
-/// The axes of the body frame are the principal axes, so the inertia is three numbers. Spins and moments are in the
-/// inertial frame.
+/// The axes of the body frame are the principal axes, so the inertia consists of three numbers. Spins and moments are
+/// in the inertial frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spatial<R = f64>(std::marker::PhantomData<R>);
 
@@ -26,7 +26,7 @@ impl<R: Real> Space for Spatial<R> {
     type Inertia = Vec3<R>;
     type Tangent = Vec3<R>;
     type TangentPlane = Vec3<R>;
-    /// Isotropic damping of the velocity (N·s/m) and of the spin (N·m·s).
+    /// Isotropic damping coefficients: one for the velocity (N·s/m), and one for the spin (N·m·s).
     type Damping = [R; 2];
     type Surface = Solid<R>;
     type Whole = Rounded<R>;
@@ -99,8 +99,9 @@ impl<R: Real> Space for Spatial<R> {
         // A quaternion and its negative are the same rotation.
         turn.v * (series * R::select(turn.w.lt(R::zero()), -two, two))
     }
-    /// Computes an upper bound from the chord `d = 2 sin(θ/4)` between the quaternions, whose arc is `θ/2`. The chord
-    /// is at most √2, so the arc is at most 1.1108 times as long as the chord.
+    /// Computes an upper bound on the angle `θ` from the chord `d = 2 sin(θ/4)` between the two quaternions. The arc
+    /// that belongs to this chord is `θ/2`. The chord is at most √2, so the arc is at most 1.1108 times as long as the
+    /// chord.
     #[inline(always)]
     fn angle_between(a: Quaternion<R>, b: Quaternion<R>) -> R {
         let square = |w: R, v: Vec3<R>| w * w + v.dot(v);
@@ -115,9 +116,9 @@ impl<R: Real> Space for Spatial<R> {
     fn momentum(inertia: Vec3<R>, rotation: Rotation3<R>, spin: Vec3<R>) -> Vec3<R> {
         rotation.apply(rotation.unapply(spin).times(inertia))
     }
-    /// Corrects the spin once by the spin that corresponds to the remaining error of the momentum (iterative
-    /// refinement). A rotation matrix is orthogonal only up to rounding, and a systematic error would accumulate over a
-    /// run.
+    /// Computes the spin from the momentum, followed by one step of iterative refinement: the momentum of this spin
+    /// differs from the given one by a small error, and the spin that corresponds to this error is added. Without this
+    /// step a systematic error would accumulate over a run, since a rotation matrix is orthogonal only up to rounding.
     #[inline(always)]
     fn spin_of(inertia: Vec3<R>, orientation: Quaternion<R>, momentum: Vec3<R>) -> Vec3<R> {
         let rotation = orientation.matrix();
@@ -167,8 +168,8 @@ impl<R: Real> Space for Spatial<R> {
         let turned = turned.normalized();
         (turned, Self::spin_of(inertia, turned, momentum))
     }
-    /// Applies the inverse of the derivative of the exponential map, to the order that fourth-order methods need: `ω −
-    /// ½ u × ω + ¹⁄₁₂ u × (u × ω)` (Munthe-Kaas 1999).
+    /// Computes `ω − ½ u × ω + ¹⁄₁₂ u × (u × ω)`, where `u` is `turned` and `ω` is `spin`. This is the inverse of the
+    /// derivative of the exponential map, to the order that fourth-order methods need (Munthe-Kaas 1999).
     #[inline(always)]
     fn turn_rate(turned: Vec3<R>, spin: Vec3<R>) -> Vec3<R> {
         let once = turned.cross(spin);

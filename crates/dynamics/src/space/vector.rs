@@ -177,8 +177,8 @@ impl<R: Real> Quaternion<R> {
         Self { w: self.w, v: -self.v }
     }
 
-    /// Returns the rotation matrix, corrected for the rounding error of the length, since a systematic error of 1e-16
-    /// would make the angular momentum drift.
+    /// Returns the rotation matrix. The rounding error of the length of the quaternion is corrected, since a systematic
+    /// error of 1e-16 would make the angular momentum drift.
     #[inline(always)]
     pub fn matrix(self) -> Rotation3<R> {
         let (w, Vec3 { x, y, z }) = (self.w, self.v);
