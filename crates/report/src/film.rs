@@ -46,7 +46,7 @@ impl Film {
         self.scene.frames.times.get(*self.frames.get(at)?).copied()
     }
 
-    /// Returns width and height of every picture (px), rounded up to even numbers.
+    /// Returns the width and height (px) of every picture, rounded up to even numbers.
     pub(crate) fn size(&self) -> [f64; 2] {
         [self.view.width, self.view.height + HEADING].map(|side| 2.0 * (0.5 * side).ceil())
     }
@@ -84,7 +84,7 @@ impl Scene {
         self.only(&(0..self.frames.len()).filter(inside).collect::<Vec<_>>())
     }
 
-    /// Returns the scene reduced to frames `1/rate` (s) apart, as for [`Film`], with all events.
+    /// Returns the scene reduced to the frames that [`Film::of_run`] selects for this rate (1/s), with all events.
     #[must_use]
     pub fn thinned(&self, rate: f64) -> Self {
         self.only(&sampled(self, rate))
@@ -117,7 +117,7 @@ pub(crate) fn sampled(scene: &Scene, rate: f64) -> Vec<usize> {
     sampled_times(&scene.frames.times[..scene.frames.len()], rate)
 }
 
-/// Returns the same as [`sampled`], for frames at `times` (s).
+/// Returns the same indices as [`sampled`], but for frames at the given times (s).
 pub(crate) fn sampled_times(times: &[f64], rate: f64) -> Vec<usize> {
     let mut frames = Vec::new();
     let mut due = f64::NEG_INFINITY;

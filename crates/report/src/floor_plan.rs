@@ -24,7 +24,7 @@ pub struct FloorPlan {
 /// A convex region of a floor plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// Corners (m).
+    /// Corners (m), in order around the region, in either direction.
     pub outline: Vec<Point>,
     /// Kind, which determines color and pattern.
     pub kind: RegionKind,
@@ -36,11 +36,11 @@ pub struct Region {
 /// cell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heat {
-    /// Side (m) of a cell; the first cell is at the origin.
+    /// Side (m) of a cell. The near left corner of the first cell is at the origin.
     pub cell: f64,
     /// Number of cells in a row, along x.
     pub columns: usize,
-    /// Values from 0 to 1, row by row.
+    /// Values of the cells, from 0 to 1, row by row from the near edge of the floor.
     pub shares: Vec<f64>,
     /// Name of the shaded quantity in the legend.
     pub label: String,
@@ -105,7 +105,7 @@ const LINE: f64 = 22.0;
 const SHADES: usize = 5;
 const SHADE: [&str; SHADES] =
     ["plan heat1", "plan heat2", "plan heat3", "plan heat4", "plan heat5"];
-/// Largest number of columns of a plan in a terminal.
+/// Maximum number of columns of a plan in a terminal, without the border.
 const COLUMNS: f64 = 100.0;
 
 impl FloorPlan {
@@ -322,7 +322,8 @@ fn shade(share: f64) -> Option<usize> {
     step.checked_sub(1)
 }
 
-/// Breaks entries into lines that are no wider than a width, unless a single entry is wider.
+/// Breaks entries into lines that are no wider than `width`, unless a single entry is wider. `wide` returns the width
+/// of an entry.
 fn wrapped<T>(entries: Vec<T>, width: f64, wide: impl Fn(&T) -> f64) -> Vec<Vec<T>> {
     let (mut lines, mut used) = (Vec::new(), f64::INFINITY);
     for entry in entries {
@@ -367,7 +368,8 @@ fn label(drawing: &mut Drawing, region: &Region, at: &dyn Fn(Point) -> [f64; 2])
     }
 }
 
-/// Draws a bar of a round length.
+/// Draws a scale bar with its left end at `[x, y]` (px) and a label. The bar represents a round length of at most a
+/// quarter of `length` (m), but at least 0.5 m. `scale` is in px/m.
 fn scale_bar(drawing: &mut Drawing, [x, y]: [f64; 2], length: f64, scale: f64) {
     let bar = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0].into_iter().rfind(|bar| *bar <= 0.25 * length);
     let bar = bar.unwrap_or(0.5);

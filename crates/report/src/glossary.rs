@@ -26,7 +26,7 @@ impl Glossary {
 
     /// Returns `text` as markup, in which the first occurrence of each term in this section is marked.
     ///
-    /// A marked term shows its meaning while the pointer is over it or while it has the focus, also without scripts.
+    /// A marked term shows its meaning while the pointer is over it or while it has the focus, even without scripts.
     pub(crate) fn marked(&mut self, text: &str) -> String {
         let mut out = String::new();
         let mut rest = text;
@@ -83,7 +83,7 @@ impl Glossary {
     }
 }
 
-/// Returns the terms that occur in `text`.
+/// Returns the terms from `words` that occur in `text`.
 pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
     words.iter().filter(|one| find(text, one.word).is_some()).collect()
 }
@@ -92,8 +92,8 @@ pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
 /// comma, that is kept on the same line as the term.
 const MOST_JOINED: usize = 4;
 
-/// Finds the first occurrence of `word` or its plural, as a whole word, in `text`; the parts of a key such as
-/// `stack.rack.mass` are not words.
+/// Returns the byte index of the first occurrence of `word` or its plural, as a whole word, in `text`; `None` if there
+/// is none. The case of ASCII letters is ignored, and the parts of a key such as `stack.rack.mass` are not words.
 fn find(text: &str, word: &str) -> Option<usize> {
     let (lower, word) = (text.to_ascii_lowercase(), word.to_ascii_lowercase());
     let letter = |c: char| c.is_alphanumeric() || c == '-' || c == '_';

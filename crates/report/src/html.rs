@@ -27,7 +27,8 @@ pub fn html(document: &Document) -> String {
     written(document, None)
 }
 
-/// Writes the document like [`html`], with a button that opens the embedded page of `trial` with its start data.
+/// Writes the document like [`html`], with a button that opens an embedded page. `trial` holds this page and its
+/// initial data.
 pub fn html_with(document: &Document, trial: &Trial<'_>) -> String {
     written(document, Some(trial))
 }
@@ -75,8 +76,8 @@ pub struct Fragment {
     pub data: String,
 }
 
-/// Translates blocks from English to a language, and writes them as part of a page that works only with scripts, such
-/// as a [`Shell`](crate::Shell).
+/// Translates blocks from English to a language, and writes them as part of a page that requires scripts, such as a
+/// [`Shell`](crate::Shell).
 pub fn fragment(blocks: &[Block], language: Language) -> Fragment {
     let english = Document { blocks: blocks.to_vec(), ..Document::default() };
     let document = english.in_language(language);
@@ -157,7 +158,7 @@ impl<'a> Writer<'a> {
         let _ = writeln!(self.out, "{open}{text}{close}");
     }
 
-    /// Writes an element like [`Writer::element`], with technical terms marked.
+    /// Writes an element as [`Writer::element`] does, and marks the technical terms in its text.
     pub(crate) fn explained(&mut self, open: &str, text: &str, close: &str) {
         let text = self.glossary.marked(&number::tied(text));
         let _ = writeln!(self.out, "{open}{text}{close}");

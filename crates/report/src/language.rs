@@ -13,7 +13,7 @@ use catalog::{Catalog, Template};
 
 /// The language of a page or a report.
 ///
-/// Numbers, units, commands, names of files and names of stations are the same in all languages.
+/// Numbers, units, commands, file names and station names are the same in all languages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Language {
     /// English, the language of the sources.
@@ -67,7 +67,7 @@ impl Language {
         missing
     }
 
-    /// Translates an English string that is an entry of the catalog as a whole; a string without an entry stays in
+    /// Returns the translation of an English string that is itself an entry of the catalog; any other string stays in
     /// English.
     pub(crate) fn fixed(self, english: &'static str) -> &'static str {
         self.catalog().and_then(|catalog| catalog.entry(english)).unwrap_or(english)
@@ -129,7 +129,8 @@ struct Translator {
     known: RefCell<HashMap<String, Translated>>,
 }
 
-/// Maximum depth of nested phrases.
+/// Maximum depth at which a phrase is translated; a deeper phrase stays in English. A part of a phrase, such as the
+/// text in the place of a placeholder, is one level deeper than the phrase.
 const DEEPEST: usize = 8;
 
 /// Maximum number of matches of a text with one template that are compared to find the best translation.
@@ -149,8 +150,9 @@ impl Translator {
         self.sentences(&plain, 0)
     }
 
-    /// Translates a text sentence by sentence; sentences that the catalog has as one entry are
-    /// translated together.
+    /// Translates a text sentence by sentence. If the translation of a sentence is not complete, but the sentence has a
+    /// complete translation together with up to three following sentences, these sentences are translated as one
+    /// phrase.
     fn sentences(&self, text: &str, depth: usize) -> Translated {
         let parts = sentences(text);
         if parts.len() < 2 {
@@ -289,8 +291,10 @@ impl Translator {
         found
     }
 
-    /// Translates `flipped`, a text with the case of its first letter inverted, and does not invert the case again;
-    /// `None` if no entry gives a sufficient translation.
+    /// Translates `flipped`, a text with the case of its first letter inverted; `None` if no entry gives a sufficient
+    /// translation.
+    ///
+    /// Does not use [`Self::derived`], which would invert the case of the first letter a second time.
     fn other_case(&self, flipped: &str, depth: usize) -> Option<Translated> {
         if let Some(fixed) = self.catalog.entry(flipped) {
             return Some(Translated { text: fixed.to_owned(), missing: Vec::new() });
@@ -402,7 +406,7 @@ fn is_prose(text: &str) -> bool {
     })
 }
 
-/// `true` if the whole text is in double quotes or backticks, as a quotation from a user's file.
+/// `true` if the whole text is in double quotes or backticks, such as a quotation from a user's file.
 fn is_quotation(text: &str) -> bool {
     let inner = |mark| text.strip_prefix(mark).and_then(|rest| rest.strip_suffix(mark));
     inner('"').or_else(|| inner('`')).is_some_and(|inner| !inner.contains("\" "))

@@ -2,7 +2,7 @@
 //!
 //! A [`Document`] is data: a verdict, [`Block`]s in reading order, warnings, provenance. [`html`]
 //! turns a document into one page that needs no network, [`markdown`] into text with separate
-//! figures, and [`document_pdf`] into numbered pages. Every format reads the same numbers.
+//! figures, and [`document_pdf`] into numbered pages. All formats contain the same numbers.
 //!
 //! A [`Figure`] is drawn once, as data, which is then written as SVG, pixels or PDF with one style
 //! sheet. A [`Film`] is a sequence of such drawings, and an [`Animation`] is a file of a whole

@@ -22,7 +22,7 @@ pub const TIME_QUANTUM: f64 = 1.0 / 1_048_576.0;
 /// differences of such numbers are exact in double precision.
 const LIMIT: f64 = (1_u64 << 48) as f64;
 
-/// Maximum length of a column that is written as plain numbers with all digits.
+/// Maximum number of values in a column that is written as plain numbers although it need not be exact.
 const PLAIN: usize = 512;
 
 fn quantize(value: f64, quantum: f64) -> Option<i64> {
@@ -32,7 +32,7 @@ fn quantize(value: f64, quantum: f64) -> Option<i64> {
     (scaled.abs() <= LIMIT).then_some(scaled as i64)
 }
 
-/// Appends the packed form of a channel to `out`.
+/// Appends a channel to `out`, packed as first or second differences; `order` is 1 or 2.
 fn pack_channel(values: impl Iterator<Item = Option<i64>>, order: u8, out: &mut Vec<u8>) {
     let (mut last, mut step) = (0_i64, 0_i64);
     let mut values = values.peekable();
@@ -63,7 +63,8 @@ fn pack_integer(mut bits: u64, out: &mut Vec<u8>) {
     }
 }
 
-/// Packs channels one after the other, as first or second differences, whichever gives fewer bytes.
+/// Packs channels one after the other, as first or second differences, whichever gives fewer bytes. Returns the order
+/// of the differences (1 or 2) and the bytes.
 fn pack(channels: &[Vec<Option<i64>>]) -> (u8, Vec<u8>) {
     let with = |order: u8| {
         let mut bytes = Vec::new();

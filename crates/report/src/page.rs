@@ -48,7 +48,7 @@ const DEPTH: [&str; 3] = [
     include_str!("../assets/deep.js"),
 ];
 
-/// Further scripts of a report, which are not part of the player.
+/// Scripts of a report, in addition to those of the player.
 const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../assets/page.js")];
 
 /// Returns all scripts that may pass strings to the function `t`, which translates them.
@@ -62,7 +62,7 @@ pub(crate) fn all_scripts() -> impl Iterator<Item = &'static str> {
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
                       img-src data: blob:";
 
-/// Content security policy of a page with an embedded program. It allows the program to run, also in workers.
+/// Content security policy of a page with an embedded program. It allows the program to run, including in workers.
 const PROGRAM_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                               script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
                               img-src data: blob:; base-uri 'none'; form-action 'none'";
@@ -123,7 +123,7 @@ impl Payload {
         self.plots.len() - 1
     }
 
-    /// Returns the index of a data column; equal columns are stored once.
+    /// Stores a data column, unless an equal column is stored already, and returns its index.
     fn column(&mut self, column: Value) -> usize {
         let key = column.to_string();
         if let Some(&place) = self.known.get(&key) {
@@ -134,7 +134,7 @@ impl Payload {
         self.columns.len() - 1
     }
 
-    /// `true` if the scene of any player is known in three dimensions.
+    /// `true` if the scene of any player has three-dimensional data.
     fn has_depth(&self) -> bool {
         let mut panes =
             self.players.iter().filter_map(|player| player["panes"].as_array()).flatten();
@@ -166,7 +166,8 @@ fn axis(axis: &Axis) -> Value {
     })
 }
 
-/// Assembles the whole file.
+/// Assembles the HTML file of a report or of a single player from its body and `payload`. With `trial`, the file also
+/// contains the embedded page.
 pub(crate) fn assemble(
     (title, language): (&str, Language),
     body: &str,
@@ -234,7 +235,7 @@ fn head((title, language): (&str, Language), policy: &str, before: &str, after: 
 
 /// A page with an embedded program, which has the same style and player as all other pages.
 ///
-/// The policy of the page allows the embedded program to run, also in workers, and forbids every
+/// The policy of the page allows the embedded program to run, including in workers, and forbids every
 /// request. Large data come last, after the scripts, so that the page is usable before the file is
 /// fully loaded.
 #[derive(Clone, Copy, Debug)]
@@ -248,18 +249,19 @@ pub struct Shell<'a> {
     pub style: &'a str,
     /// Body of the page, as markup.
     pub body: &'a str,
-    /// Data that are available when the scripts start: pairs of the id of an element and its content.
+    /// Data that are available when the scripts start: pairs of the id of an element and its content, which is not yet
+    /// compressed.
     pub at_hand: &'a [(&'a str, &'a [u8])],
     /// Script of the web workers, stored as text in the element with the id `worker`.
     pub worker: &'a str,
     /// Scripts of the page, which can access the scripts of the player.
     pub scripts: &'a [&'a str],
-    /// Data that are loaded last: pairs of the id of an element and its content, compressed with gzip.
+    /// Data that are loaded last: pairs of the id of an element and its content, which is already compressed with gzip.
     pub held: &'a [(&'a str, &'a [u8])],
 }
 
 impl Shell<'_> {
-    /// Returns the whole file.
+    /// Returns the page as an HTML file.
     pub fn html(&self) -> String {
         let Self { language, title, .. } = *self;
         let mut out = head((&language.text(title), language), PROGRAM_POLICY, "", self.style);

@@ -30,7 +30,7 @@ pub enum Paper {
 }
 
 impl Paper {
-    /// Returns width and height (points).
+    /// Returns the width and height (points).
     fn size(self) -> [f64; 2] {
         match self {
             Self::A4 => [595.28, 841.89],
@@ -59,7 +59,7 @@ pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     pdf(&document.title, &pages, tags, 1.0)
 }
 
-/// Writes a single figure on a page of its size; one px is three quarters of a point.
+/// Writes a single figure as a one-page PDF. The page has the size of the figure, at three quarters of a point per px.
 pub(crate) fn figure_pdf(figure: &Figure) -> Vec<u8> {
     let drawing = figure.draw(&escape::slug(&figure.id));
     let mut structure = Tags::new();
@@ -69,7 +69,7 @@ pub(crate) fn figure_pdf(figure: &Figure) -> Vec<u8> {
 }
 
 const POINTS_PER_PX: f64 = 0.75;
-/// Margins left and right, top, and bottom (points); the footer is within the bottom margin.
+/// Margins (points): at the left and the right, at the top, and at the bottom. The footer is within the bottom margin.
 const MARGIN: [f64; 3] = [54.0, 52.0, 60.0];
 /// Distance between baselines, as a multiple of the font size.
 const LEADING: f64 = 1.4;
@@ -82,11 +82,12 @@ struct Flow<'a> {
     document: &'a Document,
     size: [f64; 2],
     pages: Vec<Page>,
-    /// Distance (points) of the next block from the top of the current page, which is the last.
+    /// Distance (points) from the top of the current page to the next block. The current page is the last of `pages`.
     y: f64,
     names: Names,
     counter: Counter,
-    /// Collapsed content, for the appendix: its summary line, its blocks, and the counters before it.
+    /// Collapsed sections, for the appendix. For each section: its summary line, its blocks, and the numbers of the
+    /// last figure and the last table before it.
     folded: Vec<(&'a str, &'a [Block], Counter)>,
     tags: Tags,
     /// Index of the current structure element.
@@ -119,8 +120,8 @@ impl<'a> Flow<'a> {
         self.size[1] - MARGIN[2]
     }
 
-    /// Writes a structure element; all items that `write` draws belong to this element, except
-    /// those in nested elements.
+    /// Writes a structure element with `words` as its alternative text. All items that `write` draws belong to this
+    /// element, except those in nested elements.
     fn tagged(&mut self, role: StructRole, words: Option<&str>, write: impl FnOnce(&mut Self)) {
         self.settle(Some(self.current));
         let before = self.current;
@@ -130,7 +131,8 @@ impl<'a> Flow<'a> {
         self.current = before;
     }
 
-    /// Assigns `element` to all items drawn since the last call.
+    /// Assigns the structure element with index `element` to all items drawn since the last call; `None` marks these
+    /// items as decoration.
     fn settle(&mut self, element: Option<usize>) {
         if let Some(page) = self.pages.last_mut() {
             page.tags.resize(page.drawing.items.len(), element);
@@ -150,7 +152,7 @@ impl<'a> Flow<'a> {
         self.y = MARGIN[1];
     }
 
-    /// Starts a new page unless the current page is empty or has at least `height` left.
+    /// Starts a new page unless the current page is empty or has at least `height` (points) left.
     fn need(&mut self, height: f64) {
         if self.y + height > self.floor() && self.y > MARGIN[1] {
             self.turn();
@@ -203,7 +205,8 @@ impl<'a> Flow<'a> {
         self.y += GAP - 1.5;
     }
 
-    /// Writes a heading on the same page as the first `follows` (points) of the following content.
+    /// Writes a heading, on a new page if the current page has no room for the heading and `follows` (points) of the
+    /// content after it.
     fn heading(&mut self, class: &'static str, text: &str, follows: f64) {
         let above = if self.y > MARGIN[1] { 6.0 } else { 0.0 };
         let height = LEADING * Style::of(Tag::Text, class).font_size;
@@ -261,7 +264,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Draws the outcomes of the variants at 0.7 points for each px.
+    /// Draws the outcomes of the variants, scaled to 0.7 points per px.
     fn dots(&mut self, dots: &Dots) {
         const SCALE: f64 = 0.7;
         let Some(drawing) = dots.draw(self.document.language) else { return };
@@ -297,7 +300,7 @@ impl<'a> Flow<'a> {
         self.paragraph("page-text", &self.document.language.text(SCOPE));
     }
 
-    /// Writes the collapsed content, including nested collapsed content.
+    /// Writes the appendix: the collapsed sections, including those nested in other collapsed sections.
     fn appendix(&mut self) {
         if self.folded.is_empty() {
             return;
@@ -351,8 +354,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Returns the height (points) of the following content that must be on the same page as its
-    /// heading.
+    /// Returns the height (points) of the first part of `blocks`, which must be on the same page as the heading above
+    /// it.
     fn least(&self, blocks: &[Block]) -> f64 {
         let Some((first, rest)) = blocks.split_first() else { return 0.0 };
         let figure = |figure: &Figure| self.picture(figure, "measured").1 + 24.0;
@@ -401,8 +404,8 @@ impl<'a> Flow<'a> {
         self.y += GAP;
     }
 
-    /// Returns the picture of a player. If the player comes first in the document and bodies fall, the picture shows
-    /// the second fall, or the only one.
+    /// Returns the picture of a player. If the player is the first figure of the document and bodies fall, the picture
+    /// shows the second fall, or the only one. Otherwise, it is the picture from [`Player::paper_figure`].
     fn still(&self, player: &Player) -> Figure {
         let mut falls = player.scene.events.iter().filter(|event| event.kind == EventKind::Fall);
         // At the time of the second fall, the first fall is visible, too.

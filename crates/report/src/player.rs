@@ -1,4 +1,4 @@
-//! Players: animated scenes with controls, singly or several in synchrony.
+//! Players: animated scenes with controls, either a single scene or several synchronized scenes.
 
 use std::sync::Arc;
 
@@ -45,14 +45,14 @@ pub struct Players {
     pub overlay: Option<String>,
 }
 
-/// One of several scenes.
+/// One of the scenes of [`Players`], with its heading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pane {
     /// A short mark, such as a letter, by which lists refer to the pane.
     pub mark: String,
     /// Name of the pane, short enough for a heading that is a third of the page wide.
     pub name: String,
-    /// Verdict of the pane in one sentence.
+    /// Verdict of the pane, in one or more sentences.
     pub verdict: String,
     /// Tone of the verdict.
     pub tone: Tone,

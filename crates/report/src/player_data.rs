@@ -41,7 +41,7 @@ fn together<'a>(
 }
 
 /// Returns the index of the pane that a player shows first: the pane with the earliest [`Moment`] at which a body
-/// falls or, if no body falls, the pane with the earliest [`Moment`].
+/// falls or, if no body falls, the pane with the earliest [`Moment`]; `None` if no scene has a moment.
 fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
     let moments = scenes.into_iter().map(|scene| scene.moment.as_ref()).enumerate();
     let known = moments
@@ -59,7 +59,8 @@ const LEAD_IN: f64 = 1.0;
 /// Fraction of the peak of a history above which the ground motion counts as strong.
 const STRONG: f64 = 0.1;
 
-/// Returns the time (s) at which a player starts: shortly before the earliest strong ground motion.
+/// Returns the time (s) at which a player starts: shortly before the earliest strong ground motion; `None` if there is
+/// no ground motion.
 fn begins(ground: &[History]) -> Option<f64> {
     let strong = ground.iter().filter_map(|history| {
         let peak = history.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
@@ -156,7 +157,8 @@ fn pane(mark: &str, scene: &Scene, traces: &[Trace], view: &Extent) -> Value {
     })
 }
 
-/// Returns events for the page; `bodies` is the number of bodies.
+/// Returns the events for the page, without those at a time that is not finite. `bodies` is the number of bodies; the
+/// index of a body that does not exist becomes null.
 pub(crate) fn events(events: &[Event], bodies: usize) -> Vec<Value> {
     let event = |event: &Event| {
         json!({
@@ -187,8 +189,7 @@ fn history(history: &History) -> Value {
     })
 }
 
-/// Quantum to which lengths (m) and angles (rad) of ghosts are rounded: about 4 mm and 4 mrad, which is too little to
-/// be visible.
+/// Quantum of the lengths (m) and angles (rad) of ghosts: about 4 mm and 4 mrad, which is too small to be visible.
 const GHOST_QUANTUM: f64 = 1.0 / 256.0;
 
 /// Maximum distance (m) of the drawn line of a ghost from the true path.
@@ -246,8 +247,8 @@ fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
 
 /// Packs forces as four lists of channels: x and z of the point of application, and x and z of the force.
 ///
-/// A channel holds the values of the forces at the same position in the lists of all frames, so each list has as many
-/// channels as the longest list of forces has elements. Missing and zero forces are gaps.
+/// Channel `i` contains one value per frame, from the force with index `i` in the forces of the frame. The number of
+/// channels is the largest number of forces in a frame. Missing and zero forces are gaps.
 fn forces(frames: &[Vec<ContactForce>], count: usize) -> Value {
     let frames = &frames[..frames.len().min(count)];
     let slots = frames.iter().map(Vec::len).max().unwrap_or(0);

@@ -63,7 +63,7 @@ impl Axis {
         Self { range: Some([-(names.len() as f64) - 0.5, -0.5]), names, ..Self::default() }
     }
 
-    /// Returns the ordinate of the category name at an index, counted from 0.
+    /// Returns the ordinate of the category name with index `place`, counted from 0.
     pub fn row(place: usize) -> f64 {
         -(place as f64) - 1.0
     }
@@ -77,7 +77,7 @@ impl Axis {
         }
     }
 
-    /// Returns name and unit as printed beside the axis.
+    /// Returns the name and unit as printed beside the axis.
     pub(crate) fn title(&self) -> String {
         if self.label.is_empty() {
             return self.unit.clone();

@@ -218,7 +218,7 @@ impl Plot {
         drawing.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
     }
 
-    /// Draws bands from top to bottom of the plot, with their labels in the row at `row`.
+    /// Draws bands from the top to the bottom of the plot, with the baseline of the labels at y = `row` (px).
     fn draw_bands(&self, drawing: &mut Drawing, x: &Map, [top, bottom]: [f64; 2], row: f64) {
         for band in &self.bands {
             if !(self.x.shows(band.from) && self.x.shows(band.to)) {

@@ -153,7 +153,8 @@ impl Frames {
         self.len() == 0
     }
 
-    /// Returns the frame nearest to `time` (s); of two equally near frames, the earlier frame.
+    /// Returns the index of the frame nearest to `time` (s); of two equally near frames, the earlier frame. `None` if
+    /// `time` is not finite or no frame has a finite time.
     pub fn nearest(&self, time: f64) -> Option<usize> {
         let count = self.len();
         let times = self.times.get(..count)?;
@@ -244,7 +245,7 @@ pub struct Tie {
     pub bodies: [usize; 2],
     /// End points of the line, each in the frame of its body (m).
     pub points: [Point; 2],
-    /// Time (s) at which the tie breaks; a broken tie is not drawn.
+    /// Time (s) at which the tie breaks; `None` if it does not break. A broken tie is not drawn.
     pub torn_at: Option<f64>,
 }
 
@@ -280,7 +281,7 @@ pub struct Ghosts {
     pub label: String,
     /// Number of runs.
     pub count: usize,
-    /// Paths (m) relative to the body with the role [`Role::Ground`].
+    /// Paths (m) of points of bodies, relative to the body with the role [`Role::Ground`].
     pub paths: Vec<Vec<Point>>,
     /// Indices of bodies in [`Scene::bodies`], with their final poses relative to the ground.
     pub ends: Vec<(usize, Pose2)>,

@@ -4,10 +4,12 @@ use std::collections::{HashMap, HashSet};
 
 /// The translations to one language.
 pub(super) struct Catalog {
-    /// All entries as written, for strings without a placeholder and for scripts.
+    /// All translations by English string. Strings with placeholders are included as written, for scripts, which fill
+    /// the placeholders themselves.
     entries: HashMap<&'static str, &'static str>,
     templates: Vec<Template>,
-    /// For a word, the indices of templates that match only texts with this word.
+    /// For each word, the indices of the templates whose rarest word it is. These templates match only texts that
+    /// contain the word.
     by_word: HashMap<&'static str, Vec<usize>>,
     /// Indices of all templates that are not in `by_word`, because every word in them touches a placeholder.
     wordless: Vec<usize>,
@@ -17,7 +19,7 @@ pub(super) struct Catalog {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Text(&'static str),
-    /// A placeholder, by its index from 0.
+    /// A placeholder; `{1}` has the index 0.
     Slot(usize),
 }
 
