@@ -9,8 +9,8 @@ use crate::{Document, Language};
 /// Neither belongs to a document, so that equal results give equal documents and fingerprints.
 #[derive(Clone, Debug)]
 pub struct Stamp {
-    /// Returns the date of a page that is written now, such as "2026-11-27 (UTC)"; if the result is empty, no date is
-    /// stated.
+    /// Function that returns the date to state on a page, such as "2026-11-27 (UTC)", or an empty string for no date.
+    /// It is called when the page is written.
     pub date: fn() -> String,
     /// Commit of the program; not stated if empty.
     pub commit: String,
@@ -26,13 +26,13 @@ impl Stamp {
     }
 }
 
-/// Returns the provenance of a document with the date first, and with the commit beside the
-/// version of the program.
+/// Returns the provenance of a document as pairs of name and value. The date is added as the first pair, and the commit
+/// is appended to the version of the program.
 pub(crate) fn provenance(document: &Document) -> Vec<(String, String)> {
     stamped(&document.provenance, STAMP.get(), document.language)
 }
 
-/// Adds the date and the commit to a provenance of pairs of name and value; added names are in the given language.
+/// Adds the date and the commit to the pairs of name and value of a provenance; added names are in the given language.
 fn stamped(
     pairs: &[(String, String)],
     stamp: Option<&Stamp>,

@@ -93,7 +93,7 @@ impl Strip {
         Self::of_views(scene, &[&own], count)
     }
 
-    /// Creates a strip as [`Strip::of_run`] does, with the events of all views of a run.
+    /// Creates a strip like [`Strip::of_run`], but chooses from the events of all `views` of the run.
     pub fn of_views(scene: Arc<Scene>, views: &[&Scene], count: usize) -> Self {
         use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
         let named = |view: &Scene| {
@@ -138,7 +138,7 @@ impl Strip {
         Self { scene, panels }
     }
 
-    /// Creates one large picture of the first frame, with the names of the bodies.
+    /// Creates a strip of one panel: a large picture of the first frame, with the names of the bodies.
     pub(crate) fn still(scene: Arc<Scene>) -> Self {
         let first = scene.frames.times[..scene.frames.len()].first().copied();
         let panels = first.map(|time| Panel { time, note: "start".into() });
@@ -232,7 +232,7 @@ pub(crate) fn define_bodies(scene: &Scene, id: &str, view: &View, shown: &[usize
     Item::Defined(bodies.map(define).collect())
 }
 
-/// Returns the id of a body, which is unique within a page.
+/// Returns the id of a body; the prefix `id` makes it unique within a page.
 fn name(id: &str, body: usize) -> String {
     format!("{id}-b{body}")
 }

@@ -137,7 +137,7 @@ pub(crate) fn dashes(value: &str) -> Vec<f64> {
     value.split_whitespace().map(length).collect()
 }
 
-/// Parses a number; lengths are in px.
+/// Parses a plain number or a length in px; an invalid value gives zero.
 fn length(value: &str) -> f64 {
     value.trim_end_matches("px").parse().unwrap_or(0.0)
 }

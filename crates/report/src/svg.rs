@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl Drawing {
-    /// Writes the drawing for a page that contains the style sheet.
+    /// Returns the drawing as an `svg` element for a page that contains the style sheet.
     pub(crate) fn inline(&self) -> String {
         let [w, h] = [self.width, self.height].map(coordinate);
         format!(
@@ -19,7 +19,7 @@ impl Drawing {
         )
     }
 
-    /// Writes the drawing with its own style sheet on white.
+    /// Returns the drawing as a standalone SVG file, with its own style sheet and a white background.
     pub(crate) fn standalone(&self) -> String {
         let [w, h] = [self.width, self.height].map(coordinate);
         format!(

@@ -75,17 +75,17 @@ pub enum Cell {
 }
 
 impl Cell {
-    /// Creates a cell of text.
+    /// Creates a text cell.
     pub fn text(text: impl Into<String>) -> Self {
         Self::Text(text.into())
     }
 
-    /// Creates a cell of text that is not translated.
+    /// Creates a text cell that is not translated.
     pub fn verbatim(text: impl Into<String>) -> Self {
         Self::Verbatim(text.into())
     }
 
-    /// Creates a cell of text; `None` gives a missing cell.
+    /// Creates a text cell; `None` gives a missing cell.
     pub fn maybe(text: Option<impl Into<String>>) -> Self {
         text.map_or(Self::Missing, Self::text)
     }
@@ -133,7 +133,7 @@ impl Table {
         Self { rows: things.into_iter().map(row).collect(), ..Self::new(caption, &heads) }
     }
 
-    /// Writes the table as lines of text: a header row with units, then every row, with aligned columns.
+    /// Formats the table as lines of text with aligned columns: a header row with units, then every row.
     pub fn to_lines(&self) -> Vec<String> {
         let heads = self.columns.iter().map(Column::heading).collect();
         let row = |row: &Vec<Cell>| {
@@ -152,7 +152,7 @@ impl Table {
         rows.iter().map(line).collect()
     }
 
-    /// Writes the table as CSV: a header row with units, then every row at full precision.
+    /// Formats the table as CSV: a header row with units, then every row at full precision.
     pub fn to_csv(&self) -> String {
         let mut out = String::new();
         let header: Vec<_> = self.columns.iter().map(|c| csv_field(&c.heading())).collect();

@@ -1,6 +1,7 @@
 //! The button "Try a change" of a report, which opens an embedded page that contains the program.
 
-/// A page that contains the program and is embedded in a report, and the data with which it starts.
+/// The page that the button "Try a change" opens, and its start data. The page contains the program and is embedded in
+/// the report.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a> {
     /// The page, as built by [`Shell`](crate::Shell).

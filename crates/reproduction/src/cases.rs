@@ -21,8 +21,7 @@ pub enum Motion {
         /// Name of the file.
         file: String,
     },
-    /// Another record. It is recognized by its peak acceleration, which differs from the peak of
-    /// the paper's record.
+    /// A record other than the paper's: its peak acceleration differs from that of the paper's record.
     Other {
         /// Name of the file.
         file: String,
@@ -64,9 +63,9 @@ pub(super) struct PaperCases {
     pub(super) slippery: Scenario,
     /// Eight barrels at full scale.
     pub(super) eight: Scenario,
-    /// Eight barrels at the scale of the test.
+    /// Eight barrels at half scale, the scale of the shaking-table test.
     pub(super) half: Scenario,
-    /// A stack of four levels in the section along the barrels.
+    /// A stack of four levels in the longitudinal plane, along the barrel axes.
     pub(super) along: Scenario,
     /// The ground motion of the six barrels.
     pub(super) motion: Motion,
@@ -98,7 +97,7 @@ impl PaperCases {
     }
 }
 
-/// Returns the override that sets the record of a scenario.
+/// Returns the assignment to `motion.record` that sets the record of a scenario.
 fn record_of(path: &Path) -> String {
     // A JSON string is a valid TOML string, too.
     format!("motion.record={}", serde_json::Value::from(path.display().to_string()))

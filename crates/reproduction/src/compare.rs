@@ -14,7 +14,7 @@ pub enum Agreement {
     Agrees,
     /// Off by more than 20 %, but within the wider band that the project accepts.
     InBand,
-    /// Outside both ranges, or qualitatively different.
+    /// Neither within ±20 % nor within the wider band, or qualitatively different.
     Differs,
     /// Not compared: the paper's record was not given, or the paper states no result.
     NotCompared,
@@ -104,7 +104,9 @@ fn sentence(words: &str) -> String {
 /// Wider band that the project accepts for a number: lower limit, upper limit, and description.
 pub(super) type Band = (f64, f64, &'static str);
 
-/// Compares our number with the published one, in the same unit; `ours` is `None` if the event does not occur.
+/// Compares our number with the published one, in the same unit.
+///
+/// `ours` is `None` if the published event does not happen in our run; this counts as a difference.
 pub(super) fn number(
     place: &'static str,
     quantity: &str,

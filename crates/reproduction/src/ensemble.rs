@@ -16,7 +16,7 @@ pub(super) const COUNT: usize = 24;
 
 type Change = fn(&mut StackSpec, f64);
 
-/// The parameters, each with the function that multiplies it by a factor.
+/// Names of the contact parameters that are changed, each with the function that multiplies the parameter by a factor.
 const PARAMETERS: [(&str, Change); 4] = [
     ("k", vary::stiffness),
     ("c", vary::damping),
@@ -24,7 +24,7 @@ const PARAMETERS: [(&str, Change); 4] = [
     ("μ rack–ground", vary::rack_ground_friction),
 ];
 
-/// Returns the runs: one parameter changed at a time, then all combinations of all four.
+/// Returns the runs: first with one parameter changed at a time, then with all four changed, in every combination.
 pub(super) fn jobs(base: &Scenario) -> Vec<Job> {
     members()
         .into_iter()

@@ -192,7 +192,8 @@ pub(super) fn peak_velocity_time(run: &Run) -> Option<f64> {
     fastest.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())).map(|(_, time)| *time)
 }
 
-/// Plots the normal stress along the boundary of one of the paper's bodies, at rest and at its maximum.
+/// Plots the normal stress along the boundary of the body that has the given `number` in the paper: the stress at rest,
+/// and the largest stress at each point until the first loss of seat. `None` if the run has no such barrel or rack.
 pub(super) fn envelope(run: &Run, number: u32, id: &str, caption: &str) -> Option<Block> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;

@@ -93,9 +93,10 @@ impl From<GroundError> for ReproduceError {
 ///
 /// `record` is the file of the Hollywood Storage record, north-south, which cannot be distributed
 /// with the program. Without this file, the six barrels are shaken by the bundled record of South
-/// Napa, and results that depend on the motion are not compared. If `studies` is `true`,
-/// sensitivity studies follow, which take most of the time: each changes one quantity at a time, or
-/// the contact parameters by 10 %.
+/// Napa, and results that depend on the motion are not compared.
+///
+/// If `studies` is `true`, sensitivity studies follow, which take most of the time. They change one quantity at a time,
+/// change the contact parameters by 10 %, or replace the rack.
 ///
 /// `progress` is called from several threads, with the number of completed runs and the total number of runs. It stops
 /// the work by returning [`ControlFlow::Break`]. If all cases of the paper are completed by then, the result is

@@ -16,8 +16,8 @@ type Rack = (&'static str, fn(&mut StackSpec));
 /// Other solid racks with feet. They were found by random searches in which the cradle, feet, clearance, rails, node
 /// spacing and mass varied.
 ///
-/// Some of the searches considered only the cases in the section across the barrels. The rack of the catalog was chosen
-/// because it also reproduces the case in the section along the barrels.
+/// Some of the searches considered only the cases in the transverse plane, across the barrels. The rack of the catalog
+/// was chosen because it also reproduces the case in the longitudinal plane, along the barrels.
 const RACKS: [Rack; 4] = [
     ("cradle ±30°, feet ±6 cm, clearance 12 cm, 30 kg", |stack| {
         cradle(stack, 30.0);

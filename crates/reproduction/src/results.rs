@@ -44,15 +44,15 @@ pub(super) struct Results {
     pub(super) eight: Ran,
     /// Eight barrels at half scale.
     pub(super) half: Ran,
-    /// A stack of four levels in the section along the barrels.
+    /// A stack of four levels in the longitudinal plane, along the barrel axes.
     pub(super) along: Ran,
     /// Eight barrels under the sine of opposite sign.
     pub(super) mirrored: Summary,
     /// Eight barrels with the measured contact parameters.
     pub(super) measured: Summary,
-    /// Eight barrels with contact parameters changed by 10 %.
+    /// Summaries of the eight barrels with contact parameters changed by 10 %, one for each member of the ensemble.
     pub(super) ensemble: Vec<Summary>,
-    /// Other racks that reproduce the paper's numbers.
+    /// Results with other racks that also agree with the paper, one element per rack.
     pub(super) racks: Vec<Tried>,
     /// For each sampled rack near the reconstructed rack, the findings of the paper that it reproduces.
     pub(super) neighborhood: Vec<Kept>,

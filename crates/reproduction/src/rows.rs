@@ -40,7 +40,7 @@ fn body<'a>(summary: &'a Summary, name: &str) -> Option<&'a BodySummary> {
     summary.bodies.iter().find(|body| body.name == name)
 }
 
-/// Returns the time (s) at which a body fell.
+/// Returns the time (s) at which a body fell; `None` if it did not fall.
 fn fell(summary: &Summary, name: &str) -> Option<f64> {
     body(summary, name)?.fell_at
 }

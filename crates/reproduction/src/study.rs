@@ -13,7 +13,7 @@ pub(super) enum Subject {
     Six,
     /// Eight barrels under the sine.
     Eight,
-    /// A stack of four levels in the section along the barrels, under the sine.
+    /// A stack of four levels in the longitudinal plane, along the barrel axes, under the sine.
     Along,
 }
 
@@ -43,8 +43,8 @@ impl Subject {
         }
     }
 
-    /// Returns the longest duration (s) of a run, and the duration (s) that it continues after the
-    /// collapse. The latter must be long enough to include the first fall.
+    /// Returns the maximum duration (s) of a run, and the time (s) for which the run continues after the collapse. If
+    /// [`Subject::time`] is that of the first fall, the latter must be long enough to include this fall.
     fn duration(self) -> (f64, f64) {
         match self {
             Self::Six => (20.0, 0.1),
@@ -56,7 +56,7 @@ impl Subject {
 
 /// A quantity that the study changes, and its changes.
 pub(super) struct Factor<Run = Scenario> {
-    /// The quantity with its regular value, such as "cradle angle 28°".
+    /// The quantity as it is in the unchanged case, such as "cradle supports at ±28°".
     pub(super) name: String,
     /// Name of each change, with its scenario or, after the runs, with its [`Summary`].
     pub(super) ends: Vec<(String, Run)>,

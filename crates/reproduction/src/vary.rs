@@ -22,7 +22,7 @@ pub(super) fn brief(scenario: &Scenario, after: f64) -> Scenario {
     brief
 }
 
-/// Returns the interfaces of the seats of a stack.
+/// Returns the interfaces between bodies that rest on each other: rack–ground, barrel–rack and rack–rack.
 fn seats(stack: &mut StackSpec) -> [&mut Interface; 3] {
     let all = &mut stack.interfaces;
     [&mut all.rack_ground, &mut all.barrel_rack, &mut all.rack_rack]

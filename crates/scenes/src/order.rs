@@ -119,8 +119,8 @@ fn solid(kind: usize, name: &str, mass: f64, place: Vec3, turn: Vec3) -> Body<Sp
 const KINDS: [[&str; 4]; 2] =
     [["circle", "box", "round box", "barrel profile"], ["ball", "tube", "barrel", "block"]];
 
-/// Returns off-center collisions of two spinning planar bodies, for every pair of kinds: once with masses of 100 and
-/// 60 kg, once with 100 kg each.
+/// Returns scenes in which two spinning planar bodies collide off-center. Every pair of kinds has two scenes: one with
+/// masses of 100 and 60 kg, and one with 100 kg each.
 pub fn planar_pairs() -> Vec<Order<Planar>> {
     let pair = |i: usize| {
         let (a, b, mass) = (i / 4 % 4, i % 4, [60.0, 100.0][i / 16]);
@@ -136,8 +136,8 @@ pub fn planar_pairs() -> Vec<Order<Planar>> {
     (0..32).map(pair).collect()
 }
 
-/// Returns off-center collisions of two spinning three-dimensional bodies, for every pair of kinds: once with masses of
-/// 100 and 60 kg, once with 100 kg each.
+/// Returns scenes in which two spinning three-dimensional bodies collide off-center. Every pair of kinds has two
+/// scenes: one with masses of 100 and 60 kg, and one with 100 kg each.
 pub fn spatial_pairs() -> Vec<Order<Spatial>> {
     let pair = |i: usize| {
         let (a, b, mass) = (i / 4 % 4, i % 4, [60.0, 100.0][i / 16]);
@@ -155,7 +155,8 @@ pub fn spatial_pairs() -> Vec<Order<Spatial>> {
     (0..32).map(pair).collect()
 }
 
-/// Returns four planar bodies that tumble onto a floor and onto each other.
+/// Returns a scene in which four planar bodies tumble onto a floor and onto each other. Their kinds, masses, poses and
+/// velocities depend on `seed`.
 pub fn planar_heap(seed: usize) -> Order<Planar> {
     let mut random = Random(seed as u64);
     let mut bodies = vec![floor()];
@@ -171,7 +172,8 @@ pub fn planar_heap(seed: usize) -> Order<Planar> {
     Order { name: format!("four on a floor, {seed}"), bodies, laws: laws(), gravity: DOWN }
 }
 
-/// Returns two three-dimensional bodies that tumble onto a floor and onto each other.
+/// Returns a scene in which two three-dimensional bodies tumble onto a floor and onto each other. Their kinds, masses,
+/// poses and velocities depend on `seed`.
 pub fn spatial_heap(seed: usize) -> Order<Spatial> {
     let mut random = Random(seed as u64);
     let mut bodies = vec![spatial::floor()];

@@ -212,7 +212,7 @@ impl<S: Space<Real = f64>> Scene<S> {
     /// Brings the scene to static equilibrium and returns the scene.
     ///
     /// # Errors
-    /// If the bodies do not come to rest.
+    /// If a body moves out of place, or the remaining accelerations exceed `tolerance` (a fraction of gravity).
     pub fn settled(mut self, tolerance: f64) -> Result<Self, SettleError> {
         self.settle(tolerance)?;
         Ok(self)
@@ -222,7 +222,7 @@ impl<S: Space<Real = f64>> Scene<S> {
     /// the friction forces at rest.
     ///
     /// # Errors
-    /// If the bodies do not come to rest.
+    /// If a body moves out of place, or the remaining accelerations exceed `tolerance` (a fraction of gravity).
     pub fn settle(&mut self, tolerance: f64) -> Result<Settled, SettleError> {
         settle(&self.model, &mut self.state, &mut self.scratch, tolerance)
     }

@@ -8,7 +8,7 @@ use flate2::write::ZlibEncoder;
 
 use crate::POSE_QUANTUM;
 
-/// A file that is being written. Each array is compressed separately.
+/// A VTK `PolyData` file under construction. Each array is compressed separately.
 pub(super) struct PolyData {
     markup: String,
     arrays: Vec<u8>,

@@ -31,7 +31,7 @@ pub struct SolidTie {
     pub bodies: [usize; 2],
     /// Ends (m), each in the frame of its body.
     pub points: [[f64; 3]; 2],
-    /// Time (s) at which the tie breaks; a broken tie is not drawn.
+    /// Time (s) at which the tie breaks; `None` if it does not break. A broken tie is not drawn.
     pub torn_at: Option<f64>,
 }
 
@@ -92,7 +92,7 @@ pub fn paraview_of_solids<E>(
     put(Attachment { name: "stack.pvd".into(), bytes: closed_index(index).into_bytes() })
 }
 
-/// Writes the bodies at a frame.
+/// Returns the content of the `.vtp` file of a frame, with the bodies and the ties.
 fn file(solids: &Solids, frame: usize) -> Vec<u8> {
     let Solids { bodies, ties, poses, twists, .. } = solids;
     let (mut points, mut velocities) = (Vec::new(), Vec::new());
