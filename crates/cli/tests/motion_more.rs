@@ -304,6 +304,9 @@ fn a_damaged_stationxml_beside_a_record_is_named_with_what_is_wrong() {
     assert_eq!(refused(&["info", text(&file)]), alone);
     fs::write(folder.path().join("made.xml"), "<FDSNStationXML><Network code=\"XX\">").unwrap();
     let said = refused(&["info", text(&file)]);
-    assert!(said.contains("made.xml") && said.contains("no other file in the same folder"), "{said}");
+    assert!(
+        said.contains("made.xml") && said.contains("no other file in the same folder"),
+        "{said}"
+    );
     assert!(said.contains("expected a sensitivity"), "{said}");
 }
