@@ -60,7 +60,8 @@ pub struct Word {
 /// The answer in plain language.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
-    /// One short sentence, the largest text of the page.
+    /// The answer in brief, shown in the largest type on the page. Of a long headline, only the opening is shown in
+    /// this type.
     pub headline: String,
     /// Outcomes of all variants, one entry for each direction; empty for a single run.
     pub dots: Vec<Dots>,
