@@ -147,7 +147,7 @@ pub(crate) fn polish(
 }
 
 /// Returns the motion `a` with the wavelets of one round added, one wavelet for each of the `periods`. If `watching` is
-/// `true`, all extrema above the fraction [`WATCHED`] of the target are constrained, else only the peaks.
+/// `true`, other extrema above the fraction [`WATCHED`] of the target are constrained, too.
 fn corrected(work: &Work<'_>, a: &[f64], periods: &[f64], watching: bool) -> Vec<f64> {
     let oscillators = oscillators(work, periods);
     let mut wavelets = Vec::with_capacity(oscillators.len());
@@ -348,8 +348,8 @@ fn demand(
     peak
 }
 
-/// Returns, for every oscillator, the local extrema of the response above a fraction of the target,
-/// and in any case the largest extremum.
+/// Returns, for every oscillator, the local extrema of the response to the motion `a` above the fraction `share` of
+/// the target, and in any case the largest extremum.
 fn extrema(
     work: &Work<'_>,
     a: &[f64],

@@ -366,7 +366,7 @@ impl Simulation {
         PyArray1::from_vec(py, masses)
     }
 
-    /// Takes up to `count` steps; returns the number of steps taken.
+    /// Takes `count` steps, or fewer if the run ends. Returns the number of steps taken.
     fn step(&self, py: Python<'_>, count: u64) -> PyResult<u64> {
         let mut taken = 0;
         loop {
@@ -598,7 +598,8 @@ impl Simulations {
         self.all.first().map_or_else(Vec::new, |one| lock(one).names())
     }
 
-    /// Takes up to `count` steps of every simulation; returns the number of steps that each simulation took.
+    /// Takes `count` steps of every simulation, or fewer if its run ends. Returns the number of steps that each
+    /// simulation took.
     fn step(&self, py: Python<'_>, count: u64) -> PyResult<Vec<u64>> {
         let mut taken = vec![0; self.all.len()];
         let mut left = count;
