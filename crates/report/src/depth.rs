@@ -96,8 +96,8 @@ pub struct DepthBody {
     pub role: Role,
     /// Solids of the body; empty for a body that is not drawn.
     pub volumes: Vec<Volume>,
-    /// Positions (m) at which copies of the body are drawn: a barrel of a planar model stands for
-    /// several barrels that lie one behind the other and move alike.
+    /// Offsets (m), in the world frame, from the position of the body to its drawn copies: a barrel of a planar model
+    /// stands for several barrels that lie one behind the other and move alike.
     pub rows: Vec<Point3>,
 }
 

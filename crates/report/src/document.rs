@@ -143,7 +143,7 @@ impl Block {
         Self::Heading { level, text: text.into() }
     }
 
-    /// Creates content that is left out on paper.
+    /// Creates content that is left out on paper, where a sentence that begins with `what` refers to the page.
     pub fn on_screen(what: impl Into<String>, blocks: Vec<Self>) -> Self {
         Self::OnScreen { what: what.into(), blocks }
     }
