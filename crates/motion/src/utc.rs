@@ -139,7 +139,8 @@ impl Utc {
     }
 }
 
-/// Splits a UTC offset (s), such as `+03:00`, off the end of a time of day.
+/// Splits a UTC offset, such as `+03:00`, off the end of a time of day. Returns the rest and the offset (s). If there
+/// is no offset, returns the whole string and zero.
 fn without_offset(text: &str) -> (&str, f64) {
     let split = || {
         let at = text.rfind(['+', '-'])?;

@@ -15,8 +15,8 @@ const WATCHED: f64 = 0.85;
 /// of 1.
 const WATCHED_WEIGHT: f64 = 0.4;
 
-/// Largest number of solutions of the linear system in one round. The system is solved again whenever a solution raises
-/// further extrema above the target.
+/// Maximum number of times that the linear system is solved in one round. The system is solved again if a solution
+/// raises further extrema above the target.
 const BOUNDING: usize = 5;
 /// Largest applied fraction of a correction. The fraction is doubled after a success and halved after a
 /// failure.
@@ -26,7 +26,7 @@ const SMALLEST_SHARE: f64 = 0.05;
 /// Polishing ends when the misfit is at most this fraction of the tolerance.
 const POLISHED: f64 = 0.95;
 /// In two of three rounds, polishing does not correct a peak whose misfit is below this fraction of
-/// the tolerance, because fewer corrections cause fewer disturbances.
+/// the tolerance, because every correction disturbs other peaks.
 const BAND: f64 = 0.6;
 /// Minimum number of segments per period in the piecewise linear approximation of a wavelet, from which the responses
 /// to the wavelet are computed. If the motion has fewer samples per period, every sample interval is a segment.
@@ -146,7 +146,8 @@ pub(crate) fn polish(
     Ok(())
 }
 
-/// Returns the motion with the wavelets of one round added.
+/// Returns the motion `a` with the wavelets of one round added, one wavelet for each of the `periods`. If `watching` is
+/// `true`, other extrema above the fraction [`WATCHED`] of the target are constrained, too.
 fn corrected(work: &Work<'_>, a: &[f64], periods: &[f64], watching: bool) -> Vec<f64> {
     let oscillators = oscillators(work, periods);
     let mut wavelets = Vec::with_capacity(oscillators.len());
@@ -347,8 +348,8 @@ fn demand(
     peak
 }
 
-/// Returns, for every oscillator, the local extrema of the response above a fraction of the target,
-/// and in any case the largest extremum.
+/// Returns, for every oscillator, the local extrema of the response to the motion `a` above the fraction `share` of
+/// the target, and in any case the largest extremum.
 fn extrema(
     work: &Work<'_>,
     a: &[f64],
@@ -396,8 +397,12 @@ pub(crate) struct Wavelet {
 }
 
 impl Wavelet {
-    /// Creates `cos(w' (t - t_j + Δt)) exp(-((t - t_j + Δt)/γ)²)` with `w' = w √(1-ξ²)`,
-    /// `Δt = atan(√(1-ξ²)/ξ)/w'` and `γ = 1.178 f^-0.93` (Al Atik and Abrahamson 2010).
+    /// Creates the wavelet that causes a peak at sample `peak` in the response of the oscillator with the given period
+    /// (s), in a motion of `n` samples.
+    ///
+    /// The wavelet is `cos(w' (t - t_j + Δt)) exp(-((t - t_j + Δt)/γ)²)` with `w' = w √(1-ξ²)`,
+    /// `Δt = atan(√(1-ξ²)/ξ)/w'` and `γ = 1.178 f^-0.93` (Al Atik and Abrahamson 2010). Here `t_j` is the time of the
+    /// peak (s); `f` (Hz), `w` (rad/s) and `ξ` are frequency, angular frequency and damping ratio of the oscillator.
     pub(crate) fn new(period: f64, work: &Work<'_>, peak: usize, n: usize) -> Self {
         let Work { damping, time_step, .. } = *work;
         let q = (1.0 - damping * damping).sqrt();
@@ -433,13 +438,12 @@ impl Wavelet {
         Self { first, values, stride }
     }
 
-    /// Returns the number of whole strides of the wavelet; after the last stride, the wavelet is
-    /// zero.
+    /// Returns the number of strides that cover the wavelet; after that many strides, the wavelet is zero.
     fn coarse(&self) -> usize {
         self.values.len().div_ceil(self.stride)
     }
 
-    /// Returns the value of the wavelet after a number of strides.
+    /// Returns the value of the wavelet after `strides` segments of [`Self::stride`] samples; zero after its end.
     fn at(&self, strides: usize) -> f64 {
         self.values.get(strides * self.stride).copied().unwrap_or(0.0)
     }

@@ -100,8 +100,8 @@ pub(crate) fn heights(
     Page::of(&found.to_document(), document)
 }
 
-/// Ranks protections of a stack by benefit and cost, for the hazard of a site or at given peak
-/// ground velocities (m/s).
+/// Ranks protections of a stack, such as other racks and devices, by benefit and cost. The shaking is given by the
+/// hazard curve in the file `site` or by the peak ground velocities `velocities` (m/s).
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn protect(
@@ -151,7 +151,7 @@ pub(crate) fn protect(
     Page::of(&found.to_document(), found.document)
 }
 
-/// Computes the RockScore of a rack and its devices.
+/// Computes the RockScore of the rack and the devices of a stack.
 #[pyfunction]
 pub(crate) fn score(
     py: Python<'_>,

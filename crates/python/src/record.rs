@@ -165,7 +165,8 @@ impl Record {
         })
     }
 
-    /// Returns a record with a single component, which may be obtained by rotation to an azimuth.
+    /// Returns a record with only the named component. If the name is an azimuth that no channel has, the component is
+    /// computed from two horizontal components.
     fn component(&self, name: &str) -> PyResult<Self> {
         let wanted: Component = name.parse().map_err(errors::motion)?;
         let channel = self.inner.component(&wanted).map_err(errors::motion)?;
@@ -235,8 +236,8 @@ impl Record {
         Ok(record.into())
     }
 
-    /// Scales all components by the factor that brings a measure of one component, or of both
-    /// horizontals, to a value (SI units).
+    /// Scales all components by the factor that brings an intensity measure to `value` (SI units). The argument
+    /// `of` is a component, or a combination of both horizontals such as `rotd50`.
     fn scaled_to(&self, measure: &str, value: f64, of: &str) -> PyResult<Self> {
         let measure: IntensityMeasure = measure.parse().map_err(errors::motion)?;
         let factor = self.factor(measure, value, of).map_err(errors::motion)?;
@@ -394,7 +395,7 @@ pub(crate) fn standard_periods(py: Python<'_>, per_decade: usize) -> Numbers<'_>
     barrelstack_motion::standard_periods(per_decade).into_pyarray(py)
 }
 
-/// Converts the value of a measure, given with its unit, to SI units.
+/// Parses the value of an intensity measure, such as `50 cm/s`, and converts it to SI units.
 #[pyfunction]
 pub(crate) fn measured(measure: &str, text: &str) -> PyResult<f64> {
     let of: IntensityMeasure = measure.parse().map_err(errors::motion)?;

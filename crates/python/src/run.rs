@@ -20,11 +20,12 @@ use crate::page::{html_in, language_of, paper_of, pdf_in};
 use crate::table::Table;
 use crate::view::{Numbers, Rows, rows, view};
 
-/// Results of a scenario, in the governing plane or in the other plane.
+/// Results of a scenario in one plane. If the scenario has two planes, this is either the governing plane, in which
+/// more variants collapse, or the other plane.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Run {
     answer: Arc<Answer>,
-    /// `true` for the plane that does not govern.
+    /// `true` for the results in the plane that does not govern, [`Answer::other`].
     beside: bool,
 }
 
@@ -119,7 +120,7 @@ fn missing(what: &str) -> PyErr {
 
 #[pymethods]
 impl Run {
-    /// Returns the result of the other plane, if the scenario has both.
+    /// Returns the results in the other plane; `None` if the scenario has only one plane.
     fn other(&self) -> Option<Self> {
         let answer = Arc::clone(&self.answer);
         self.answer.other.as_ref().map(|_| Self { answer, beside: !self.beside })
@@ -175,7 +176,7 @@ impl Run {
         joints.map(facts).collect()
     }
 
-    /// Returns the vertical and horizontal forces (N) on the upper body.
+    /// Returns the histories of the vertical and the horizontal force (N) on the upper body of joint `at`.
     fn joint<'py>(slf: &Bound<'py, Self>, at: usize) -> PyResult<(Numbers<'py>, Numbers<'py>)> {
         let joint = slf.get().run().recording.joints.get(at).ok_or_else(|| missing("joint"))?;
         Ok((view(slf.as_any(), &joint.vertical)?, view(slf.as_any(), &joint.horizontal)?))
@@ -230,8 +231,8 @@ impl Run {
         rows(py, points.map(|(p, length)| [p.position.x, p.position.z, p.coordinate, *length]))
     }
 
-    /// Returns the stresses (N/m) at rest, the largest stresses until the first loss of seat, and
-    /// the largest stresses over the whole run.
+    /// Returns three stresses (N/m) for every point of an envelope: at rest, the largest until the first loss of seat,
+    /// and the largest over the whole run.
     fn envelope_stresses<'py>(
         slf: &Bound<'py, Self>,
         at: usize,

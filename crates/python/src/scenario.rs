@@ -94,7 +94,7 @@ impl Scenario {
         ground.motion.as_ref().map(of_motion).transpose()
     }
 
-    /// Checks every plane and returns the findings of each as JSON.
+    /// Checks the scenario in each of its planes. Returns the findings for each plane as JSON.
     fn check(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let found = py.detach(|| {
             let spatial = self.inner.is_spatial();
@@ -309,7 +309,7 @@ pub(crate) fn reference(of: &str) -> PyResult<String> {
     }
 }
 
-/// Returns the keys of the summary as path, unit and meaning.
+/// Returns path, unit and meaning of every key in the summary of a run.
 #[pyfunction]
 pub(crate) fn fields() -> Vec<(String, String, String)> {
     let schema = barrelstack_report::described::document::<Summary>("summary");

@@ -254,7 +254,8 @@ fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
     of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Builds and settles the nominal stack (0) or variants of a scenario, on all cores.
+/// Builds and settles the variants of a scenario that have the given numbers, on all cores; number 0 is the nominal
+/// stack. If `plane` is `None`, uses the first plane. The inner error is that the scenario has no such plane.
 fn started(
     scenario: &barrelstack::Scenario,
     plane: Option<&str>,
@@ -297,7 +298,8 @@ pub(crate) struct Simulation {
 
 #[pymethods]
 impl Simulation {
-    /// Builds and settles the nominal stack (0) or a variant of a scenario.
+    /// Builds and settles variant `number` of a scenario; number 0 is the nominal stack. If `plane` is `None`, uses the
+    /// first plane.
     #[staticmethod]
     fn start(py: Python<'_>, of: &Scenario, plane: Option<&str>, number: u32) -> PyResult<Self> {
         let (_, count) = with_variants(&of.inner, None)?;
@@ -336,7 +338,7 @@ impl Simulation {
         each!(&*lock(&self.running), one => one.ending()).map(barrelstack::watch::Ending::name)
     }
 
-    /// Time (s) of the first loss of seat.
+    /// Time (s) of the first loss of seat; `None` if no body has left its seat.
     #[getter]
     fn collapse(&self) -> Option<f64> {
         match &*lock(&self.running) {
@@ -364,7 +366,7 @@ impl Simulation {
         PyArray1::from_vec(py, masses)
     }
 
-    /// Takes up to `count` steps; returns the number of steps taken.
+    /// Takes `count` steps, or fewer if the run ends. Returns the number of steps taken.
     fn step(&self, py: Python<'_>, count: u64) -> PyResult<u64> {
         let mut taken = 0;
         loop {
@@ -404,7 +406,8 @@ impl Simulation {
         PyArray1::from_vec(py, all).reshape([running.bodies(), running.widths()[1]])
     }
 
-    /// Returns the bodies of every contact, and one row per contact: point, force on the first body, penetration.
+    /// Returns the names of the two bodies of every contact, and one row per contact: point (m), force (N) on the first
+    /// body, and penetration (m).
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<(Vec<(String, String)>, Rows<'py>)> {
         let (pairs, width, rows) = match &*lock(&self.running) {
             Running::Plane(one) => contacts(&one.assembly().model, one.state(), one.scratch()),
@@ -565,7 +568,8 @@ impl Simulations {
 
 #[pymethods]
 impl Simulations {
-    /// Builds and settles the variants 1 to `count` of a scenario; for a free scene, builds `count` copies.
+    /// Builds and settles the variants 1 to `count` of a stack. A free scene has no variants; it is built once and
+    /// copied to give `count` simulations.
     #[staticmethod]
     fn start(py: Python<'_>, of: &Scenario, plane: Option<&str>, count: u32) -> PyResult<Self> {
         let free = of.inner.imperfections().is_none();
@@ -594,7 +598,8 @@ impl Simulations {
         self.all.first().map_or_else(Vec::new, |one| lock(one).names())
     }
 
-    /// Takes up to `count` steps of every simulation; returns the number of steps that each simulation took.
+    /// Takes `count` steps of every simulation, or fewer if its run ends. Returns the number of steps that each
+    /// simulation took.
     fn step(&self, py: Python<'_>, count: u64) -> PyResult<Vec<u64>> {
         let mut taken = vec![0; self.all.len()];
         let mut left = count;

@@ -1,4 +1,4 @@
-//! Three-dimensional runs: summary, trajectories of the bodies, and page.
+//! Three-dimensional runs: summaries, trajectories of the bodies, pages and files.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -144,7 +144,7 @@ impl SpatialRun {
         })
     }
 
-    /// Writes the same files as a run on the command line, including the scenario as stated.
+    /// Writes the same files as a run on the command line. `stated` is the content of `scenario.toml`.
     fn write(
         &self,
         py: Python<'_>,

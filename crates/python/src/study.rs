@@ -163,7 +163,7 @@ fn request(hazard: Option<&Path>, years: Option<f64>) -> PyResult<Request> {
     Ok(Request { hazard, years })
 }
 
-/// Computes the decision from the study in a folder.
+/// Evaluates the study in a folder, finished or not. Returns the page with its curves, losses and rates.
 #[pyfunction]
 pub(crate) fn decision(
     py: Python<'_>,

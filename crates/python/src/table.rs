@@ -370,7 +370,8 @@ impl Cases<'_> {
         Ok(Prepared { scenario: Arc::new(scenario), ground })
     }
 
-    /// Returns a hash of the topology; cases whose hashes differ cannot run together.
+    /// Returns a hash of the view, the number of levels and the number of columns of the stack. Cases whose hashes
+    /// differ cannot run together.
     fn kind(scenario: &barrelstack::Scenario) -> u64 {
         let Some(stack) = scenario.stack() else { return 0 };
         fnv1a(format!("{:?} {} {}", stack.view, stack.levels, stack.columns).as_bytes())

@@ -9,7 +9,7 @@ fn node(value: Value) -> Node {
     Node { origin: Origin::Default, value }
 }
 
-/// Converts a dict to a table of a scenario.
+/// Converts a dict to the TOML [`Table`] of a scenario.
 pub(crate) fn table(dict: &Bound<'_, PyDict>) -> PyResult<Table> {
     let mut entries = Vec::new();
     for (key, value) in dict {

@@ -96,8 +96,8 @@ pub struct DepthBody {
     pub role: Role,
     /// Solids of the body; empty for a body that is not drawn.
     pub volumes: Vec<Volume>,
-    /// Positions (m) at which copies of the body are drawn: a barrel of a planar model stands for
-    /// several barrels that lie one behind the other and move alike.
+    /// Offsets (m), in the world frame, from the position of the body to its drawn copies: a barrel of a planar model
+    /// stands for several barrels that lie one behind the other and move alike.
     pub rows: Vec<Point3>,
 }
 
@@ -121,7 +121,7 @@ pub struct DepthTie {
     pub bodies: [usize; 2],
     /// End points of the band, each in the frame of its body (m).
     pub points: [Point3; 2],
-    /// Time (s) at which the band breaks; a broken band is not drawn.
+    /// Time (s) at which the band breaks, after which it is not drawn; `None` if it does not break.
     pub torn_at: Option<f64>,
 }
 
@@ -136,13 +136,14 @@ pub struct Depth {
     pub ties: Vec<DepthTie>,
     /// Events, in order of time.
     pub events: Vec<Event>,
-    /// The instant that the player shows when it opens.
+    /// The instant that the player shows when it opens, with the index of its body in [`Self::bodies`]; `None` if no
+    /// instant is marked.
     pub moment: Option<Moment>,
     /// With [`DepthPoses::Free`]: for each [`Trace`](crate::Trace) of the planar scene, the index of the body whose
     /// center it follows.
     pub paths: Vec<usize>,
     /// With [`DepthPoses::Free`]: for each frame, the contact forces, each as its point (m) and its components (N). A
-    /// force of zero is not drawn. The packed data are smallest if a contact has the same position in the list of every
+    /// force of zero is not drawn. The packed data are smallest if a contact has the same index in the list of every
     /// frame.
     pub forces: Vec<Vec<[Point3; 2]>>,
     /// For each pane of the player, the indices of the axes that point right and up in it; the pane shows the
@@ -200,7 +201,8 @@ impl Depth {
     }
 
     /// Packs forces as six lists of channels: for the three coordinates of the point and the three components of the
-    /// force. Each list has one channel for every position in the longest list of forces; missing forces are gaps.
+    /// force. Channel `i` of each list holds, for every frame, the force with index `i`. It has a gap in a frame where
+    /// this force is missing or zero.
     fn packed_forces(&self, count: usize) -> Value {
         let frames = &self.forces[..self.forces.len().min(count)];
         let slots = frames.iter().map(Vec::len).max().unwrap_or(0);

@@ -18,11 +18,11 @@ pub struct Diagram {
     pub time: f64,
     /// Labels and their positions (m).
     pub labels: Vec<(Point, String)>,
-    /// Arrows over the bodies.
+    /// Arrows, drawn over the bodies.
     pub arrows: Vec<Arrow>,
 }
 
-/// An arrow between two bodies.
+/// An arrow from one point of the scene to another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrow {
     /// Tail (m).

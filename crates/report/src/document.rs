@@ -60,7 +60,8 @@ pub struct Word {
 /// The answer in plain language.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
-    /// One short sentence, the largest text of the page.
+    /// The answer in brief, shown in the largest type on the page. Of a long headline, only the opening is shown in
+    /// this type.
     pub headline: String,
     /// Outcomes of all variants, one entry for each direction; empty for a single run.
     pub dots: Vec<Dots>,
@@ -142,7 +143,7 @@ impl Block {
         Self::Heading { level, text: text.into() }
     }
 
-    /// Creates content that is left out on paper.
+    /// Creates content that is left out on paper, where a sentence that begins with `what` refers to the page.
     pub fn on_screen(what: impl Into<String>, blocks: Vec<Self>) -> Self {
         Self::OnScreen { what: what.into(), blocks }
     }

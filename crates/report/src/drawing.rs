@@ -154,7 +154,7 @@ pub(crate) enum Room {
 }
 
 impl Room {
-    /// Returns `page` or `phone`, the lengths for the two available widths.
+    /// Returns the length for this width: `page` on a page, and `phone` on a phone.
     pub(crate) fn of(self, page: f64, phone: f64) -> f64 {
         match self {
             Self::Page => page,

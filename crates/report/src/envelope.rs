@@ -1,5 +1,4 @@
-//! Normal stress along the boundary of a body: the stress at rest, drawn over the largest stress
-//! during the run.
+//! Normal stress along the boundary of a body: the stress at rest, drawn over the largest dynamic stress.
 
 use crate::{
     Language, Polyline, csv_field,
@@ -21,13 +20,13 @@ pub struct Envelope {
     pub closed: bool,
     /// Stress at rest at each sample, never negative; NaN makes a gap.
     pub static_stress: Vec<f64>,
-    /// Largest stress during the run at each sample.
+    /// Largest stress at each sample, during a time span that the caller chooses.
     pub dynamic_stress: Vec<f64>,
     /// Unit of both stresses, such as `kPa` or `kN/m`.
     pub unit: String,
     /// Ratio of dynamic to static stress, as defined by the caller; shown unless it is `None`.
     pub amplification: Option<f64>,
-    /// Name and unit of the sample coordinate, such as `angle`, for the CSV.
+    /// Name and unit of the sample coordinate, such as `angle` and `rad`, for the CSV.
     pub coordinate: (String, String),
 }
 

@@ -251,7 +251,7 @@ impl Counter {
         self.tables
     }
 
-    /// Counts the figures and tables of blocks that are written later, so that the numbers continue after them.
+    /// Counts the figures and tables of blocks that are not written here, so that the numbers continue after them.
     pub(crate) fn skip(&mut self, blocks: &[Block]) {
         walk(blocks, &mut |block| match block {
             Block::Figure(_) | Block::Player(_) | Block::Players(_) => self.figures += 1,
@@ -265,7 +265,8 @@ impl Counter {
     }
 }
 
-/// Returns the letter of one of several panes that share the number of a figure.
+/// Returns the suffix of the figure number for one of several panes that share the number: `a` to `z` for the panes
+/// with index 0 to 25, then `-27`, `-28` and so on.
 pub(crate) fn pane_letter(pane: usize) -> String {
     u8::try_from(pane)
         .ok()

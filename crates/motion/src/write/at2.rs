@@ -1,6 +1,6 @@
 //! Writes PEER AT2 files: one component in g, five numbers per line.
 //!
-//! Spec: header lines of files from NGA and NGA-West2, with the sources stated in the reader, `format::peer`.
+//! Spec: header lines of files from NGA and NGA-West2; the sources are stated in the reader, `format::peer`.
 
 use std::fmt::Write as _;
 
@@ -21,8 +21,8 @@ const LONGEST_NAME: usize = 12;
 /// Writes a record of one channel as PEER AT2, in g with eight significant digits.
 ///
 /// The four header lines are the provenance; the event, station and component; the quantity and
-/// unit; and the count and the step (s) at full precision. Commas, parentheses and some words that
-/// readers of the format would interpret are replaced.
+/// unit; and the number of samples and the time step (s) at full precision. Commas, parentheses and some
+/// words that readers of the format would interpret are replaced.
 ///
 /// ```
 /// use barrelstack_motion::{ReadOptions, bundled, read, write};

@@ -55,7 +55,7 @@ fn line(text: &str) -> String {
     plain.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Words by which files of other formats are recognized.
+/// Keywords by which readers of other formats recognize their files.
 const FOREIGN: [&str; 4] = ["NPTS", "RAW PGA", "ARCHIVO EST", "GNS SCIENCE"];
 
 /// Inserts a hyphen into each of `words`, after the second letter, so that the words remain legible
