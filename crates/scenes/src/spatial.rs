@@ -39,7 +39,7 @@ pub fn floor() -> Body<Spatial> {
     ground_of(vec![centered(Solid::HalfSpace)])
 }
 
-/// Returns a free homogeneous ball with a radius (m), a mass (kg) and a center (m).
+/// Returns a free, homogeneous ball of the given radius (m), mass (kg) and center (m).
 pub fn ball(radius: f64, mass: f64, center: Vec3) -> Body<Spatial> {
     let inertia = 0.4 * mass * radius * radius;
     Body {

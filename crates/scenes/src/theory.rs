@@ -1,4 +1,4 @@
-//! Closed-form solutions, each with its source.
+//! Closed-form solutions for rocking, overturning, sliding, impact, rolling and stacking, each with its source.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -65,16 +65,18 @@ pub fn rectangular_overturning(rate_times_duration: f64) -> f64 {
     1.0 / (1.0 - exp(-rate_times_duration))
 }
 
-/// Returns the least amplitude A/(gα) of a half-sine pulse with ω/p = ρ that overturns a slender block.
+/// Returns the least amplitude A/(gα) of a half-sine pulse that overturns a slender block.
 ///
-/// This is the root of cos ψ + e^{−(π−ψ)/ρ} = ρ sin ψ with sin ψ = gα/A (Makris and Roussos 2000).
+/// `ratio` is ρ = ω/p. The amplitude is 1/sin ψ, where ψ is the root of cos ψ + e^{−(π−ψ)/ρ} = ρ sin ψ (Makris and
+/// Roussos 2000).
 pub fn half_sine_overturning(ratio: f64) -> f64 {
     sine_root(ratio, |psi| cos(psi) + exp(-(PI - psi) / ratio))
 }
 
 /// Returns the least amplitude A/(gα) of a one-sine pulse that overturns a slender block without impact.
 ///
-/// This is the root of cos ψ − e^{−(2π−ψ)/ρ} = ρ sin ψ with sin ψ = gα/A (Makris and Roussos 2000).
+/// `ratio` is ρ = ω/p. The amplitude is 1/sin ψ, where ψ is the root of cos ψ − e^{−(2π−ψ)/ρ} = ρ sin ψ (Makris and
+/// Roussos 2000).
 pub fn one_sine_overturning(ratio: f64) -> f64 {
     sine_root(ratio, |psi| cos(psi) - exp(-(TAU - psi) / ratio))
 }
@@ -89,8 +91,9 @@ fn sine_root(ratio: f64, side: impl Fn(f64) -> f64) -> f64 {
     1.0 / sin(0.5 * (low + high))
 }
 
-/// Returns the least amplitude A/(gα) of a one-cosine pulse that overturns a slender block without impact:
-/// (1 + ρ²)/(1 − e^{−2π/ρ}) (Makris and Roussos 2000).
+/// Returns the least amplitude A/(gα) of a one-cosine pulse that overturns a slender block without impact.
+///
+/// The amplitude is (1 + ρ²)/(1 − e^{−2π/ρ}), where `ratio` is ρ = ω/p (Makris and Roussos 2000).
 pub fn one_cosine_overturning(ratio: f64) -> f64 {
     (1.0 + ratio * ratio) / (1.0 - exp(-TAU / ratio))
 }
@@ -159,7 +162,7 @@ pub fn lift_off_lost(damping_ratio: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Returns the duration of an impact on a spring and a damper that acts on approach only, as the phase ω t.
+/// Returns the duration t of an impact on a spring and a damper, as the phase ω t. The damper acts on approach only.
 ///
 /// The duration is the sum of the damped approach and the undamped rebound, which lasts a quarter period.
 pub fn contact_phase(damping_ratio: f64) -> f64 {

@@ -46,7 +46,7 @@ pub fn bodies(seed: u64, count: usize, spacing: f64) -> Vec<Body<Planar>> {
     bodies
 }
 
-/// Returns contact laws that suit the bodies of a heap: a spring with damping on approach only
+/// Returns an interface whose contact laws suit the bodies of a heap: a spring with damping on approach only
 /// ([`NormalLaw::SpeedGap`]), and Coulomb friction.
 ///
 /// `factor` multiplies the stiffnesses, and `damping` the damping constants.

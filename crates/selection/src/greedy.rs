@@ -1,5 +1,5 @@
-//! Greedy selection: one record for each simulated spectrum, followed by exchanges as long as they improve
-//! the set.
+//! Greedy selection of one record for each simulated spectrum. Members of the set are then exchanged for other
+//! candidates as long as this improves the set.
 
 use barrelstack_motion::{MotionError, Random};
 
@@ -37,7 +37,7 @@ pub struct Choosing {
     pub scale: [f64; 2],
     /// Maximum number of selected records from one group; `None` for no limit.
     pub most_of_group: Option<usize>,
-    /// Seed of the simulated spectra.
+    /// Seed of the random number generator that draws the simulated spectra.
     pub seed: u64,
 }
 
@@ -59,10 +59,10 @@ pub struct Selection {
     pub mean: Vec<f64>,
     /// Standard deviation of ln Sa over the set, at each period, with the divisor `n − 1`.
     pub deviation: Vec<f64>,
-    /// Number of candidates that can be scaled to the mean of the target with a scale factor within the limits.
+    /// Number of candidates whose scale factor to the mean of the target lies within the limits.
     ///
-    /// Scaling makes the ln Sa of the candidate equal to the mean of the target at the period of the condition. If the
-    /// target is not conditional, scaling makes their averages over all periods equal.
+    /// The scaled candidate has the ln Sa of the target's mean at the conditioning period. If the target is not
+    /// conditional, the scaled candidate has the same average of ln Sa over all periods as the target's mean.
     pub eligible: usize,
     /// Number of rounds of exchanges.
     pub rounds: usize,
@@ -87,8 +87,8 @@ impl Selection {
         })
     }
 
-    /// Returns the error by which sets are compared. An error of the median counts twice as much as an error
-    /// of the standard deviation.
+    /// Returns the error by which sets are compared: the larger of the error of the median and half the error of the
+    /// standard deviation. If the target has no spread, returns the error of the median.
     fn worst(&self, target: &SelectionTarget) -> f64 {
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         let deviation = if spread { 0.5 * self.deviation_error(target) } else { 0.0 };
@@ -102,13 +102,13 @@ const SMALLEST: f64 = 0.01;
 /// Selects records whose spectra together have the mean and the spread of the target (Jayaram, Lin and Baker
 /// 2011, Earthquake Spectra 27:797-815).
 ///
-/// If the target is conditional, every record is scaled to the target at the period of the condition. Otherwise every
+/// If the target is conditional, every record is scaled to the target at the conditioning period. Otherwise, every
 /// record is scaled such that its mean of ln Sa over all periods equals that of its simulated spectrum. The same
 /// target, candidates and settings always give the same set; of equally good candidates, the first is chosen.
 ///
 /// # Errors
 /// If the settings are out of range, if the number of periods of a candidate differs from that of the target,
-/// or if too few candidates lie within the limits.
+/// or if too few candidates satisfy the limits on the scale factor and on the number of records of one group.
 pub fn select(
     target: &SelectionTarget,
     candidates: &[Candidate],
@@ -189,7 +189,7 @@ struct Row {
     candidate: usize,
     /// ln Sa at each period.
     spectrum: Vec<f64>,
-    /// Level of the spectrum: ln Sa at the period of the condition, or the mean of ln Sa over all periods if the
+    /// Level of the spectrum: ln Sa at the conditioning period, or the mean of ln Sa over all periods if the
     /// target is not conditional. Scaling makes it equal to the level of a simulated spectrum.
     level: f64,
     group: usize,
@@ -199,7 +199,7 @@ struct Row {
 struct Pool {
     rows: Vec<Row>,
     groups: usize,
-    /// Index of the period of the condition; `None` if the target is not conditional.
+    /// Index of the conditioning period; `None` if the target is not conditional.
     given: Option<usize>,
     /// Logarithms of the minimum and the maximum scale factor.
     limits: [f64; 2],
@@ -237,15 +237,14 @@ impl Pool {
         (self.limits[0]..=self.limits[1]).contains(&(level - self.rows[row].level))
     }
 
-    /// Returns the number of candidates that can be scaled to the level of the mean of the target with a scale factor
-    /// within the limits.
+    /// Returns the number of candidates whose scale factor to the mean of the target lies within the limits.
     fn eligible(&self, target: &SelectionTarget) -> usize {
         let level = self.level(target.mean());
         (0..self.rows.len()).filter(|row| self.reaches(*row, level)).count()
     }
 
-    /// Returns, among the candidates that may join the set, the one with the smallest squared distance from a
-    /// spectrum.
+    /// Returns the index of the row that, scaled to `level`, has the smallest squared distance from `spectrum`. Only
+    /// rows that may join the set and can be scaled within the limits are considered. Returns `None` if there are none.
     fn nearest(&self, spectrum: &[f64], level: f64, set: &Set<'_>) -> Option<usize> {
         let mut best = (f64::INFINITY, None);
         for (k, row) in self.rows.iter().enumerate() {
@@ -301,7 +300,8 @@ impl<'a> Set<'a> {
         }
     }
 
-    /// `true` if a row may join the set, provided that the member at the index `leaving` leaves the set.
+    /// Returns `true` if a row of the pool may join the set: it is not a member, and the limit on the number of records
+    /// of its group is not reached. The member at index `leaving`, if given, is not counted.
     fn takes(&self, pool: &Pool, row: usize, leaving: Option<usize>) -> bool {
         let group = pool.rows[row].group;
         let mut same = 0;
@@ -369,8 +369,8 @@ impl<'a> Set<'a> {
         ROUNDS
     }
 
-    /// Returns the error of the set with an additional spectrum. Summation over the periods stops as soon as the sum
-    /// exceeds `limit`.
+    /// Returns the error of the set with an additional spectrum, whose ln Sa is increased by `shift`. Summation over
+    /// the periods stops as soon as the sum reaches `limit`.
     fn error_with(&self, spectrum: &[f64], shift: f64, limit: f64) -> f64 {
         let mut error = 0.0;
         for (k, (value, mean)) in spectrum.iter().zip(self.target.mean()).enumerate() {
@@ -404,7 +404,8 @@ impl<'a> Set<'a> {
         (mean, spread)
     }
 
-    /// Returns the mean and the standard deviation, with the divisor `n − 1`, from sums over the whole set.
+    /// Returns the mean and the standard deviation, with the divisor `n − 1`, from the sum and the sum of
+    /// squares over all members.
     fn moments_of(&self, sum: f64, squares: f64) -> (f64, f64) {
         let n = self.members.len() as f64;
         let mean = sum / n;

@@ -10,7 +10,7 @@ pub const PERIODS: [f64; 22] = [
     2.5, 3.0, 4.0, 5.0, 7.5,
 ];
 
-/// Condition of a conditional spectrum: a spectral acceleration at one period.
+/// Condition of a conditional spectrum: a spectral acceleration at one period, the conditioning period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
     /// Period (s), which must be one of the periods of the target.
@@ -34,7 +34,7 @@ pub struct SelectionTarget {
     /// Mean of ln Sa at each period; Sa is in m/s².
     mean: Vec<f64>,
     deviation: Vec<f64>,
-    /// Covariance matrix of ln Sa, row by row.
+    /// Covariance matrix of ln Sa, in row-major order.
     covariance: Vec<f64>,
     condition: Option<Condition>,
 }
@@ -54,7 +54,7 @@ impl SelectionTarget {
     ///
     /// # Errors
     /// If there are fewer than two periods, if they are not in ascending order, if a number is out of range,
-    /// or if the period of the condition is not among them.
+    /// or if the conditioning period is not among them.
     pub fn new(
         periods: &[f64],
         median: &[f64],
@@ -152,8 +152,8 @@ impl SelectionTarget {
 
     /// Returns the lower triangular Cholesky factor `L` of the covariance matrix `L Lᵀ`.
     ///
-    /// Some columns are zero: the column of the period of the condition, and the column of any period at which ln Sa is
-    /// determined by its values at the periods before. Published correlations are rounded, so small negative pivots
+    /// Some columns are zero: the column of the conditioning period, and the column of any period at which ln Sa is
+    /// determined by its values at the preceding periods. Published correlations are rounded, so small negative pivots
     /// occur.
     fn cholesky(&self) -> Vec<f64> {
         let n = self.periods.len();

@@ -42,7 +42,7 @@ pub enum MotionError {
         file: String,
         /// The requested channel.
         wanted: String,
-        /// The channels of the file.
+        /// Names of the channels in the file, or their number.
         available: String,
     },
     /// Two time series that are to be combined have different time steps or otherwise do not match.
@@ -50,7 +50,7 @@ pub enum MotionError {
     Mismatch {
         /// Description of the mismatch.
         what: String,
-        /// Remedy for the user.
+        /// Suggested remedy.
         remedy: String,
     },
     /// An iterative computation did not reach its tolerance.
@@ -64,7 +64,7 @@ pub enum MotionError {
         rounds: usize,
         /// Required tolerance, formatted.
         wanted: String,
-        /// Remedy for the user.
+        /// Suggested remedy.
         remedy: String,
     },
 }

@@ -22,7 +22,7 @@ pub enum History {
 /// A history that starts at a later time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Delayed {
-    /// Start of the history (s), not negative.
+    /// Time (s) at which the history starts; not negative.
     pub delay: f64,
     /// The history; its time is counted from its own start.
     pub history: History,

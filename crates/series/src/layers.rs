@@ -1,6 +1,6 @@
 //! Fast approximate response spectra: each oscillator runs at the coarsest sufficient time step.
 //!
-//! Searches evaluate spectra thousands of times; their results are checked by the exact recursion
+//! A search evaluates spectra thousands of times. Its result is then checked by the exact recursion
 //! of [`crate::response`]. The approximate peaks differ from the exact peaks by at most 0.6 % with
 //! 20 steps per period and by 0.3 % with 40.
 
@@ -14,10 +14,11 @@ const LAYER_STEPS: f64 = 40.0;
 /// A piecewise-linear acceleration at successively coarser time steps.
 pub struct Layers {
     time_step: f64,
-    /// Accelerations at steps of 1, 2, 4, … samples. Each value is a weighted mean of the acceleration over the step
-    /// before it and the step after it. The weight decreases linearly from the time of the value to zero at one step
-    /// from it. For an oscillator whose impulse response is linear between the samples, these means as loads give the
-    /// exact response.
+    /// Loads on the oscillators; one layer each for time steps of 1, 2, 4, … samples.
+    ///
+    /// Each load is a weighted mean of the acceleration. The weight decreases linearly from its maximum at the time of
+    /// the load to zero one step before and one step after. If the impulse response of an oscillator is linear within
+    /// each step, these loads give its exact response.
     layers: Vec<Vec<f64>>,
 }
 

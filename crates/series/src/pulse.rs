@@ -9,7 +9,7 @@ use crate::sampled::Kinematics;
 /// Every pulse ends at [`Pulse::duration`]. Afterwards the acceleration is zero, the velocity keeps
 /// its final value and the displacement grows linearly. A [`Pulse::Sine`] is the exception: its
 /// velocity is zero after the end. In the formulas, `T` is the period, `w = 2π/T`, and `s` is the
-/// time from the middle of the pulse.
+/// time from the center of the pulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pulse {
     /// Harmonic displacement `d = A sin(w t)` over `cycles` periods, with half-cosine ramps over
@@ -59,7 +59,7 @@ pub enum Pulse {
     /// Ricker wavelet `a = A (1 - 2u) exp(-u)` with `u = (π s/T)²`, centered at `2 T` and of length
     /// `4 T`.
     ///
-    /// Velocity and displacement return to zero, which makes this the safest pulse for tests.
+    /// Velocity and displacement return to zero, so the ground ends at rest in its initial position.
     Ricker {
         /// Peak acceleration `A` (m/s²).
         acceleration: f64,

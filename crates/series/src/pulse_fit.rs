@@ -11,7 +11,7 @@ use crate::sampled::Sampled;
 /// A velocity pulse of Mavroeidis and Papageorgiou, fitted to a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulseFit {
-    /// The pulse; its time 0 is the time [`PulseFit::start`] of the record.
+    /// The pulse. Its time is counted from [`PulseFit::start`].
     pub pulse: Pulse,
     /// Prevailing period (s).
     pub period: f64,
@@ -20,7 +20,7 @@ pub struct PulseFit {
     pub amplitude: f64,
     /// Largest velocity of the pulse (m/s).
     pub peak_velocity: f64,
-    /// Time at which the pulse starts (s); may lie before the record.
+    /// Time in the record at which the pulse starts (s); negative if the pulse starts before the record.
     pub start: f64,
     /// Share of the energy (the sum of the squared velocities) that the pulse explains, 0 to 1.
     ///
@@ -105,7 +105,7 @@ struct Fit {
     explained: f64,
 }
 
-/// Returns the cosine and the sine form of the pulse at time `s` from its middle.
+/// Returns the cosine and the sine form of the pulse at time `s` (s) from its center.
 fn quadratures(period: f64, gamma: f64, s: f64) -> (f64, f64) {
     if s.abs() > 0.5 * gamma * period {
         return (0.0, 0.0);
@@ -116,9 +116,8 @@ fn quadratures(period: f64, gamma: f64, s: f64) -> (f64, f64) {
     (window * cos, window * sin)
 }
 
-/// Finds the time (s) of the middle at which the pulse explains the largest sum of squared
-/// velocities. The motion is correlated with the cosine form and with the sine form. Returns this
-/// time and this sum.
+/// Shifts the pulse to the center time at which it explains the largest sum of squared velocities. Returns this time
+/// (s) and this sum. The motion is correlated with the cosine form and with the sine form of the pulse.
 fn best_shift(
     spectrum: &[Complex],
     dt: f64,
@@ -186,7 +185,7 @@ fn project(velocity: &[f64], dt: f64, trial: &Fit) -> Projection {
     Projection { even, odd, explained: even * ve + odd * vo }
 }
 
-/// Refines period, width and middle by coordinate search with decreasing steps.
+/// Refines the period, the width and the center time of the pulse by coordinate search with decreasing steps.
 fn refine(velocity: &[f64], dt: f64, start: Fit, shortest: f64, longest: f64) -> Fit {
     let mut best = start;
     best.explained = project(velocity, dt, &best).explained;

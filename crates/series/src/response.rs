@@ -70,7 +70,7 @@ impl Step {
     }
 
     /// Returns the relative displacement and velocity one step later. `load` and `next_load` are
-    /// the negative ground acceleration now and one step later.
+    /// the ground acceleration, with its sign reversed, now and one step later.
     #[inline]
     pub fn advance(&self, u: f64, v: f64, load: f64, next_load: f64) -> (f64, f64) {
         let d = &self.displacement;

@@ -154,8 +154,10 @@ fn still() -> MotionError {
     MotionError::parameter("motion", "a velocity other than zero", "zero")
 }
 
-/// Velocities (m/s) of both components, decimated to a time step of at most [`STEP`] where
-/// possible.
+/// Velocities (m/s) of both components; those of the second are zero for a single component.
+///
+/// They are decimated to the largest multiple of the original time step that does not exceed [`STEP`]. If the original
+/// time step is already larger, every sample is kept.
 struct Thinned {
     time_step: f64,
     first: Vec<f64>,

@@ -4,11 +4,11 @@ use std::sync::OnceLock;
 
 use crate::fourier::{Complex, correlate, forward, inverse};
 
-/// Length of the wavelet's support, in the wavelet's own units.
+/// Length of the mother wavelet's support. At scale `s`, the support is this number times `s`.
 const SUPPORT: usize = 7;
 /// Number of times that the point spacing of the wavelet table is halved; the initial spacing is 1.
 const LEVELS: u32 = 8;
-/// Center frequency of the wavelet in its own units: a pulse of scale `s` has the period
+/// Center frequency of the mother wavelet, in cycles per unit of its argument. A pulse of scale `s` has the period
 /// `s/0.7143`.
 const CENTER_FREQUENCY: f64 = 5.0 / 7.0;
 
@@ -93,14 +93,16 @@ impl Wavelet {
     }
 }
 
-/// Fourier transforms of two velocity histories, computed once for many wavelets.
+/// Fourier transform of two velocity histories, which are the real and the imaginary part of one series. It is computed
+/// once for many wavelets.
 pub(super) struct Pair {
     spectrum: Vec<Complex>,
     samples: usize,
 }
 
 impl Pair {
-    /// Computes the transform of both histories, padded for wavelets up to `largest`.
+    /// Computes the transform. Both histories are padded with zeros such that wavelets up to the length of `largest` do
+    /// not wrap around.
     pub(super) fn new(first: &[f64], second: &[f64], largest: &Wavelet) -> Self {
         let length = (first.len() + largest.half()).next_power_of_two();
         let mut spectrum: Vec<Complex> =

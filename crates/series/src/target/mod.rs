@@ -104,8 +104,8 @@ pub enum TargetSpectrum {
         /// most 0.75, the factor is 1 at any distance.
         fault_distance: Option<f64>,
     },
-    /// ICC-ES AC156 with ASCE 7-16: horizontal required response spectrum for shake-table tests, 5
-    /// % damping. Defined from 0.1 Hz, where it is a tenth of the plateau, to 33.3 Hz.
+    /// ICC-ES AC156 with ASCE 7-16: horizontal required response spectrum for shake-table tests,
+    /// 5 % damping. It is defined from 0.1 Hz, where it is a tenth of the plateau, to 33.3 Hz.
     Ac156 {
         /// Short-period spectral acceleration `S_DS` (g).
         sds: f64,
