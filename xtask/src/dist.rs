@@ -67,7 +67,7 @@ pub(crate) fn run(root: &Path, rest: &[&str]) -> anyhow::Result<()> {
     }
 }
 
-/// Makes and checks everything that this machine can, the quickest first.
+/// Makes and checks the parts of a release that can be made on this machine, the quickest first.
 fn all(root: &Path) -> anyhow::Result<()> {
     lint(root)?;
     crates(root)?;

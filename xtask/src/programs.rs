@@ -12,7 +12,7 @@ use crate::python::checked;
 use crate::steps::cargo;
 
 /// Programs to build: folder of the crate whose README contains the program, `true` to build it with the default
-/// features, and largest CPU time (s) of the build.
+/// features, and maximum CPU time (s) allowed for the build.
 ///
 /// `docs/install.md` states the measured times.
 const PROGRAMS: [(&str, bool, f64); 4] = [

@@ -179,15 +179,15 @@ fn installed(python: &Path, requirement: &str) -> bool {
     run.is_ok_and(|status| status.success())
 }
 
-/// Returns the command `pip install` of an environment.
+/// Returns a `pip install` command for the environment of a Python interpreter.
 pub(crate) fn pip(python: &Path) -> Command {
     let mut pip = inside(python);
     pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]);
     pip
 }
 
-/// Returns the command of a Python interpreter, with the programs of its environment first on the
-/// search path.
+/// Returns a command that starts a Python interpreter. The folder of the interpreter, which contains
+/// the programs of its environment, comes first on the search path.
 pub(crate) fn inside(python: &Path) -> Command {
     let mut command = Command::new(python);
     let path = std::env::var_os("PATH").unwrap_or_default();

@@ -18,7 +18,7 @@ use crate::web;
 struct Step {
     /// Arguments of `cargo`.
     arguments: &'static [&'static str],
-    /// `true` if warnings of rustdoc are errors.
+    /// `true` if rustdoc warnings are errors.
     strict_docs: bool,
     /// Advice after a failure.
     remedy: &'static str,

@@ -13,10 +13,12 @@ pub(crate) struct Tally {
 impl Tally {
     /// Counts the tests in the output of a command.
     ///
-    /// Closing lines are `test result: ok. 3 passed; 0 failed; 1 ignored; …` of Rust's runner, and
-    /// `3 passed, 0 failed, 1 skipped` of scripts. A test whose data are missing, such as a record
-    /// that cannot be distributed, prints a line with `skipped: ` and ends. The test runner counts
-    /// such a test as passed, but this function counts it as skipped.
+    /// The numbers are read from the closing line of each test run: from Rust's test runner,
+    /// `test result: ok. 3 passed; 0 failed; 1 ignored; …`; from scripts, `3 passed, 0 failed, 1 skipped`.
+    ///
+    /// A test whose data are missing, such as a record that cannot be distributed, prints a line with
+    /// `skipped: ` and ends. The test runner counts such a test as passed, but this function counts it
+    /// as skipped.
     pub(crate) fn of<'a>(lines: impl IntoIterator<Item = &'a str>) -> Self {
         let mut total = Self::default();
         let mut notices = 0;

@@ -22,8 +22,7 @@ const DEBIAN: &str = "/usr/bin/rustc";
 /// Build of the engine and its page.
 pub(crate) struct Build {
     root: PathBuf,
-    /// Linker for the build with a standard library from source; `None` if the standard library of the target is
-    /// installed.
+    /// Linker, if the standard library of the target must be built from source; `None` if it is installed.
     linker: Option<PathBuf>,
 }
 

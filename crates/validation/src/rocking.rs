@@ -11,7 +11,7 @@ use crate::oracle::{OVERTURNED, Ride, Rocker};
 use crate::scene::{DOWN, Scene, block, coulomb, floor, interface, pose};
 use crate::{Effort, Failure, GRAVITY, swing, theory};
 
-/// Mass (kg) of the block; no answer depends on it.
+/// Mass (kg) of the block; no result depends on it.
 const MASS: f64 = 100.0;
 
 /// The contact law of the corners.
@@ -116,7 +116,7 @@ impl RockingBlock {
     /// Returns `p` multiplied by the time that the block takes from a rotation of `share · α` to the upright position.
     ///
     /// # Errors
-    /// If the block does not come down.
+    /// If the run fails numerically, or if the block does not pass through the upright position.
     pub fn quarter_period(&self, share: f64) -> Result<f64, Failure> {
         match self.swings(share, 1, 20.0)?.first() {
             Some((end, _)) => Ok(end * self.rate()),
@@ -172,11 +172,14 @@ impl RockingBlock {
         Ok(swings)
     }
 
-    /// Returns the ratio of angular velocities at the first impact after a release at a rotation of `share · α`. The
-    /// ratio is the square root of the fraction of the energy that remains, computed from the next peak.
+    /// Releases the block at a rotation of `share · α`, and returns the ratio of its angular velocities after and
+    /// before the first impact.
+    ///
+    /// The ratio is the square root of the fraction of the energy that remains after the impact, computed from the next
+    /// peak rotation.
     ///
     /// # Errors
-    /// If the block does not rock.
+    /// If the run fails numerically, or if the block does not pass through the upright position.
     pub fn restitution(&self, share: f64) -> Result<f64, Failure> {
         let height = |share: f64| {
             let theta = share * self.alpha;
@@ -189,11 +192,11 @@ impl RockingBlock {
         }
     }
 
-    /// Returns the block with the damping ratio that gives the target ratio of angular velocities at the first impact
-    /// after a release at `φ = ½`; `None` if no damping ratio up to 12 gives this ratio.
+    /// Returns the block with the damping ratio that gives a target [`restitution`](Self::restitution) after a release
+    /// at a rotation of `½ α`; `None` if no damping ratio between 0.02 and 12 gives this restitution.
     ///
     /// # Errors
-    /// If a block does not rock.
+    /// If a run fails numerically, or if the block does not pass through the upright position.
     pub fn calibrated(mut self, target: f64) -> Result<Option<Self>, Failure> {
         let (mut low, mut high) = (0.02, 12.0);
         let mut shows = |zeta: f64| {
@@ -250,7 +253,10 @@ impl RockingBlock {
         Ok(fell)
     }
 
-    /// Returns the outcome of the motion of the block on moving ground.
+    /// Simulates the block on moving ground; returns whether it overturns, and its largest rotation.
+    ///
+    /// `acceleration_end` (s) is the end of the ground acceleration. The run ends when the block has overturned or can
+    /// no longer overturn, and at the latest `patience` (s) after the end of the acceleration.
     ///
     /// # Errors
     /// If the run fails numerically.
@@ -289,7 +295,7 @@ impl RockingBlock {
     }
 }
 
-/// Returns the contact frequency (rad/s) at an effort.
+/// Returns the contact frequency (rad/s) for an effort.
 pub fn contact_frequency(effort: Effort) -> f64 {
     match effort {
         Effort::Fast => 1500.0,

@@ -11,22 +11,25 @@ use serde::{Deserialize, Serialize};
 pub struct Case {
     /// Outcome of the variant.
     outcome: Ended,
-    /// Time (s) at which the first barrel counts as fallen.
+    /// Time (s) at which the first barrel counts as fallen; `None` if no barrel fell, or if the
+    /// variant has no valid result.
     first_fall: Option<f64>,
     /// Number of barrels.
     barrels: usize,
-    /// Time (s) at which each barrel counts as fallen, by name.
+    /// Name of each barrel, and the time (s) at which it counts as fallen; `None` for a barrel that
+    /// did not fall.
     falls: Vec<(String, Option<f64>)>,
     /// Largest displacement of the top relative to the ground, as a share of the height of the
     /// stack.
     drift: Option<f64>,
     /// Largest load on a stave as a share of its capacity, if a capacity is stated.
     stave_utilization: Option<f64>,
-    /// The first warning.
+    /// The first warning about the result; `None` if there are no warnings.
     warning: Option<String>,
-    /// Time (s) for which the motion continues after the end of the run.
+    /// Duration (s) of the ground motion that remained when the run ended; zero if the run ended at
+    /// rest or covered the whole motion. `None` if the variant was stopped or could not run.
     cut: Option<f64>,
-    /// End time (s).
+    /// Simulated time (s) that the run reached; `None` if the variant was stopped or could not run.
     end_time: Option<f64>,
 }
 

@@ -13,7 +13,7 @@ use serde::Serialize;
 pub(crate) struct Devices {
     /// Names of the devices on the stack, with their tables in `[stack]`.
     present: Vec<DeviceTable>,
-    /// Settings of devices that the stack does not have but that could be added.
+    /// Devices that the stack does not have but that could be added, one entry for each possible setting.
     candidates: Vec<Candidate>,
 }
 
@@ -23,7 +23,7 @@ struct DeviceTable {
     table: String,
 }
 
-/// A setting of a device that could be added.
+/// A device that could be added to the stack, with one of its possible settings.
 #[derive(Serialize)]
 struct Candidate {
     device: &'static str,
@@ -34,8 +34,8 @@ struct Candidate {
 }
 
 impl Devices {
-    /// Lists the devices of a scenario; each candidate setting is checked on the stack at rest,
-    /// without the motion.
+    /// Lists the devices of a scenario. A candidate is listed only if the stack with this device can
+    /// be assembled; this check leaves out the ground motion.
     pub(crate) fn of(scenario: &Scenario, language: Language) -> Self {
         let mut still = scenario.clone();
         still.motion.source = MotionSource::None;
@@ -69,7 +69,8 @@ impl Devices {
     }
 }
 
-/// Returns the table to which a change of the stack refers.
+/// Returns the table in `[stack]` to which a change refers, such as `lid` for `stack.lid.levels=1`; `None` if the
+/// change does not have this form.
 fn table(change: &str) -> Option<String> {
     Some(change.strip_prefix("stack.")?.split_once('.')?.0.to_owned())
 }

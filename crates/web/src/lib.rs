@@ -84,8 +84,8 @@ pub enum RequestKind {
     /// The results of the variants `numbers` in each plane, as JSON; then the paths of their barrels (the trails) as
     /// bytes, for a report.
     Variants,
-    /// The verdict on given results, as JSON. The request contains the numbers of the variants, of
-    /// which the first is 0, and their results in each plane.
+    /// The verdict on given results, as JSON. In the request, `numbers` lists the variants, starting
+    /// with 0 (the nominal case), and `cases` contains their results in each plane.
     Verdict,
     /// The summary of a run and its variants, as JSON; it is the same in all languages.
     Summary,

@@ -46,9 +46,9 @@ pub(crate) struct Looked {
     variants: u32,
     /// The scenario with every default written out.
     resolved: String,
-    /// All values of the scenario.
+    /// Fields of the scenario with their values, and the fields that its tables leave out.
     settings: Vec<Stated>,
-    /// Results of the check of each plane.
+    /// Check results, one for each plane.
     checked: Vec<Checked>,
     /// Names of the devices on the stack.
     devices: Vec<String>,
@@ -103,7 +103,7 @@ fn opening(motion: &GroundMotion) -> f64 {
     (time + IN_PROGRESS).ceil()
 }
 
-/// A value of the scenario.
+/// A field of the scenario, with its value and the source of the value.
 #[derive(Serialize)]
 struct Stated {
     path: String,

@@ -19,7 +19,7 @@ fn say(answer: Vec<u8>) {
     ANSWER.with(|kept| *kept.borrow_mut() = answer);
 }
 
-/// Allocates a request of `length` bytes and returns its address; discards the last answer.
+/// Allocates memory for a request of `length` bytes and returns its address; discards the last answer.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn room(length: usize) -> *mut u8 {
     std::panic::set_hook(Box::new(|panic| say(panic.to_string().into_bytes())));

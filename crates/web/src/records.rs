@@ -20,10 +20,10 @@ pub struct Reading {
     pub time_step: Option<f64>,
 }
 
-/// The contents of the given files.
+/// The motions in the given files, and the files that contain no motion.
 #[derive(Default, Serialize)]
 pub(crate) struct Files {
-    /// The motions in the files; the bytes of combined motions follow in this order.
+    /// The motions in the files. The combined files follow the JSON in this order.
     motions: Vec<Motion>,
     /// Files that contain no motion.
     refused: Vec<Refused>,
@@ -53,7 +53,7 @@ struct Refused {
     missing: Option<&'static str>,
 }
 
-/// Maximum number of channels of one record.
+/// Maximum number of channels of one motion.
 const COMPONENTS: usize = 3;
 
 /// Reads record files and groups them into motions.

@@ -7,8 +7,8 @@ use barrelstack::ensemble::Trail;
 /// Paths of barrels, by the index of the plane and the number of the variant.
 pub(crate) type Trails = BTreeMap<(u32, u32), Trail>;
 
-/// Encodes the paths of barrels in little-endian form: numbers and lengths in four bytes, positions in single
-/// precision.
+/// Encodes the paths of barrels in little-endian form: numbers and lengths in four bytes each, positions in
+/// single precision.
 pub(crate) fn written<'a>(trails: impl IntoIterator<Item = ((u32, u32), &'a Trail)>) -> Vec<u8> {
     let mut out = Vec::new();
     let number = |number: usize, out: &mut Vec<u8>| {

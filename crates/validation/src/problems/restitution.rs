@@ -1,4 +1,4 @@
-//! Restitution of a normal contact law without gravity, of a mass under gravity, and of a rocking block.
+//! Restitution of a mass that strikes the floor, with and without gravity, and of a rocking block.
 
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
@@ -108,10 +108,10 @@ fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f
     Ok(left)
 }
 
-/// Returns the time step (s) of a refinement.
+/// Returns the time step (s) at a refinement level.
 ///
-/// A refinement halves only the time step and keeps the stiffness, because the exact answer is the restitution of the
-/// contact law with this stiffness.
+/// Each level halves the time step. The stiffness is the same at all levels, because the exact answer is the
+/// restitution of the contact law with this stiffness.
 fn step(level: i32) -> f64 {
     1e-4 / OMEGA / 2.0_f64.powi(level)
 }

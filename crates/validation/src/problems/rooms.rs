@@ -35,7 +35,7 @@ fn run(room: &Room, threads: usize) -> Result<RoomRun, Failure> {
     barrelstack_cellar::run(room, &settings, &mut |_| ControlFlow::Continue(())).map_err(absent)
 }
 
-/// Returns a wall whose face toward negative `x` is at a position (m).
+/// Returns a wall whose face at `x` (m) faces the negative x-direction.
 fn wall(x: f64, normal: NormalLaw) -> Obstacle {
     let name = "wall".to_owned();
     let interface = Interface {
@@ -53,7 +53,7 @@ fn wall(x: f64, normal: NormalLaw) -> Obstacle {
 /// a run.
 type Measure = (&'static str, &'static str, &'static str, Reference, fn(&RoomRun) -> Option<f64>);
 
-/// Creates the problems of one run, which is computed once.
+/// Creates the problems whose quantities are computed from one run.
 fn measured(
     title: &str,
     source: &str,
@@ -101,7 +101,7 @@ fn block(velocity: f64) -> Result<Scenario, Failure> {
 /// Contact law of a wall that a block strikes.
 const SPRING: NormalLaw = NormalLaw::KelvinVoigt { stiffness: BLOCK[3], damping: 0.0 };
 
-/// Runs two blocks: the first strikes the second, which then crosses a second gap and rebounds from a wall.
+/// Simulates two blocks: the first strikes the second, which then crosses a second gap and rebounds from a wall.
 fn pounded() -> Result<RoomRun, Failure> {
     let [_, speed, gap, _] = BLOCK;
     let mut room = room(vec![
@@ -221,7 +221,7 @@ const BARREL: [f64; 4] = [280.0, 0.9, 0.1, 0.345];
 /// Stiffness (N/m^1.5) of the wall, coefficient of restitution, and speed (m/s) below which the restitution is higher.
 const REBOUND: [f64; 3] = [1.2e9, 0.4, 0.05];
 
-/// Runs a barrel that moves into a wall on a smooth floor. The barrel spins as if it rolled; since nothing has
+/// Simulates a barrel that moves into a wall on a smooth floor. The barrel spins as if it rolled. Since no contact has
 /// friction, the spin does not change.
 fn thrown_back() -> Result<RoomRun, Failure> {
     let ([mass, speed, gap, radius], [stiffness, restitution, slow]) = (BARREL, REBOUND);
@@ -417,8 +417,8 @@ fn glancing(turn: f64, own: f64, side: f64) -> Result<Room, Failure> {
     Ok(room)
 }
 
-/// Runs a room of [`glancing`] blocks. Returns an error if the blocks do not touch each other, or if the second block
-/// does not touch the wall.
+/// Simulates a room of [`glancing`] blocks. Returns an error if the blocks do not touch each other, or if the second
+/// block does not touch the wall.
 fn met(room: &Room, threads: usize) -> Result<RoomRun, Failure> {
     let run = run(room, threads)?;
     let all = !run.meetings.is_empty() && run.obstacles[0].first.is_some();

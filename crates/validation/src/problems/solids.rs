@@ -220,8 +220,8 @@ fn flat(share: f64, count: f64) -> Problem {
 
 /// Creates the problem of the smoothness of forces while one box moves over the flats, edges and corners of another.
 ///
-/// The quantity is the largest change of force between neighboring points of a fine path, relative to the change that
-/// follows from the stiffness.
+/// The quantity is computed from the change of force between neighboring points of a fine path, divided by the contact
+/// stiffness and by the step between the points. It is the amount by which the largest such ratio exceeds 4, or 0.
 fn smooth() -> Problem {
     setting(
         "solids/smooth-along-paths",

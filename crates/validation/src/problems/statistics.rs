@@ -27,7 +27,7 @@ const SAMPLE: f64 = 0.01;
 /// Returns a synthetic record: the sum of 24 sine waves between 0.4 Hz and 6 Hz with random phases, multiplied by an
 /// envelope.
 ///
-/// Its peak is between 0.26 g and 0.5 g, so that less than half of the records overturn the block.
+/// Its peak is between 0.26 g and 0.5 g, so that fewer than half of the records overturn the block.
 fn record(seed: u64) -> Sampled {
     let mut random = Random(seed);
     let peak = random.within(0.26, 0.5) * GRAVITY;

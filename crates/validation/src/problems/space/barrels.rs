@@ -70,7 +70,7 @@ fn shaped(length: f64, head: f64, bilge: f64, rounding: f64) -> Result<Barrel, F
     Barrel::new(length, head, bilge, rounding).map_err(absent)
 }
 
-/// Returns the mean rate (rad/s) at which the axis of body 1 precesses about the vertical, from the start to a time
+/// Returns the mean rate (rad/s) at which the axis of body 1 precesses about the vertical, from the start to `end`
 /// (s).
 fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Failure> {
     let (mut round, mut before) = (0.0, 0.0);

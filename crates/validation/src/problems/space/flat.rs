@@ -1,4 +1,4 @@
-//! Three-dimensional bodies that touch the floor or each other with a face or along a line: rest, rocking and rolling.
+//! Three-dimensional bodies in face or line contact with the floor or with each other: rest, rocking and rolling.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::ControlFlow;
@@ -27,7 +27,7 @@ const ACROSS: f64 = 22.6;
 const HALF: f64 = 0.4725;
 /// Radius (m) of the flat part of the head of the barrel.
 const HEAD: f64 = 0.269_982_558_045_203;
-/// Stiffness (N/m) that is low enough for measurable deformations.
+/// Stiffness (N/m) of a contact, low enough for measurable deformations.
 const SOFT: f64 = 1e6;
 
 pub(super) fn problems() -> Vec<Problem> {

@@ -75,7 +75,7 @@ fn incline(degrees: f64, friction: f64, acceleration: f64, spin: f64) -> [Proble
 /// Radius (m) of the large ball that represents the floor if the rolling ball is the target of the contact pair.
 const EARTH: f64 = 1e5;
 
-/// Creates the ball on a slope, with the contact constants of the problems of [`carried`].
+/// Creates a ball on a slope for the problems of [`carried`]; `role` is the role of the ball in the contact pair.
 fn rolling(role: Role, friction: f64) -> Result<Scene<Spatial>, Failure> {
     let gravity = gravity_on_slope(G, 20_f64.to_radians(), HEADING);
     let stiffness = 1e7;

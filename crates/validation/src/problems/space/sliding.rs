@@ -13,7 +13,7 @@ use crate::spatial::{corners, floor, free, gravity_on_slope, points, yaw};
 use crate::{Failure, Problem};
 
 const MASS: f64 = 100.0;
-/// Half the lengths (m) of the sides of the block's footprint.
+/// Half-lengths (m) of the sides of the block's footprint.
 const HALF: (f64, f64) = (0.7365, 0.27);
 
 pub(super) fn problems() -> Vec<Problem> {
@@ -228,7 +228,7 @@ fn ring() -> [Problem; 3] {
     ]
 }
 
-/// Ground that moves in a circle; its acceleration (m/s²) rotates with ω (rad/s).
+/// Ground that moves in a circle; its acceleration (m/s²) rotates at the angular velocity ω (rad/s).
 struct Circling {
     acceleration: f64,
     omega: f64,
