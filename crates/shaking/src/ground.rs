@@ -103,8 +103,8 @@ pub fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError
     Ok(ground)
 }
 
-/// Returns the motion of a loaded record according to its specification, for a stack built at the length scale
-/// `similitude`.
+/// Processes and scales a loaded record as `spec` and `motion` specify, for a stack built at the length scale
+/// `similitude`. The source that `motion` names is ignored.
 ///
 /// # Errors
 /// If the record lacks a requested component, or cannot be scaled as specified.
@@ -280,9 +280,9 @@ fn scaled_by_both(
 /// Returns the requested processing; by default, [`Processing::compact`] for a raw record, and no processing for any
 /// other record.
 ///
-/// [`Processing::compact`] removes the padding of the filter, which is about half a minute of rest before the first
-/// arrival. A settled stack does not need this rest. Velocity and displacement are then corrected so that they end at
-/// zero.
+/// [`Processing::compact`] removes the pads that high-pass filtering adds. They are about half a minute of rest before
+/// the first arrival, which a settled stack does not need. Velocity and displacement are then
+/// corrected so that they end at zero.
 fn processing_of(spec: &RecordMotion, record: &Record) -> Processing {
     match (spec.processing, record.stage) {
         (ProcessingSpec::Default, Stage::Raw) => Processing::compact(),

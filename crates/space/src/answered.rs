@@ -41,8 +41,8 @@ macro_rules! either {
 }
 
 impl AnyAnswer {
-    /// Runs all variants of a scenario, and then the run that the results show. The observer receives the progress and
-    /// may cancel the work.
+    /// Runs the variants of a scenario, and then the case that `choice` selects, which the results show in detail. The
+    /// observer receives the progress and may cancel the work.
     ///
     /// # Errors
     /// When the motion cannot be read, or when the stack cannot be built or does not stand.
@@ -70,7 +70,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Sets the changes that would have kept the stack standing.
+    /// Stores the changes that would have kept the stack standing, as [`AnyAnswer::remedy`] returns them.
     pub fn set_remedy(&mut self, found: Option<Remedy>) {
         match self {
             Self::Planes(answer) => answer.decides.summary.remedy = found,
@@ -86,7 +86,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Repeats the run that the results show, with small changes, and stores the comparison in the summary.
+    /// Repeats the run that is shown in detail, with small changes, and stores the comparison in the summary.
     ///
     /// # Errors
     /// When a repeat cannot be built or does not stand.
@@ -105,7 +105,8 @@ impl AnyAnswer {
         Ok(())
     }
 
-    /// Returns the comparison of the run that the results show with its repeats, made by [`AnyAnswer::verify`].
+    /// Returns the comparison of the run that is shown in detail with its repeats; `None` before
+    /// [`AnyAnswer::verify`] is called.
     pub fn verification(&self) -> Option<&Verification> {
         match self {
             Self::Planes(answer) => answer.decides.summary.verification.as_ref(),
@@ -113,7 +114,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns the summary of the run that the results show, with the statistics of all variants.
+    /// Returns the summary of the run that is shown in detail, with the statistics of all variants.
     pub fn summary(&self) -> AnySummary {
         match self {
             Self::Planes(answer) => AnySummary::Planar(Box::new(answer.decides.summary.clone())),
@@ -152,7 +153,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns the time (s) at which the run that the results show ended.
+    /// Returns the time (s) at which the run that is shown in detail ended.
     pub fn end_time(&self) -> f64 {
         match self {
             Self::Planes(answer) => answer.decides.run.end_time,
@@ -184,7 +185,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns `true` if the computation failed in any of the runs that the results show.
+    /// Returns `true` if the computation failed in any of the runs that are shown in detail.
     pub fn is_invalid(&self) -> bool {
         let invalid = |outcome: &Outcome| matches!(outcome, Outcome::Invalid { .. });
         match self {
@@ -218,7 +219,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Renders the run that the results show into a folder, and returns what was rendered.
+    /// Renders the run that is shown in detail into a folder, and returns what was rendered.
     ///
     /// # Errors
     /// When a file cannot be written.

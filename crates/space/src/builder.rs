@@ -38,7 +38,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) raised: f64,
 }
 
-/// Contact laws, and the indices of the contact laws that devices define.
+/// Contact laws, and the indices of the contact laws that depend on the devices.
 pub(crate) struct Laws {
     /// All contact laws: those of [`StackPair::ALL`] at their indices, followed by those of the devices.
     pub(crate) all: Vec<Interface<Spatial>>,
@@ -299,7 +299,8 @@ impl<'a> Builder<'a> {
         if body == Stack::GROUND { 1 } else { self.bodies[body].surfaces.len() }
     }
 
-    /// Adds the contact pairs of all solids of two bodies. `law` returns the contact law for a solid of the contactor.
+    /// Adds a contact pair for every solid of the contactor with every solid of the target. `law` returns the contact
+    /// law for the index of a solid of the contactor.
     fn meet(
         &self,
         list: &mut Vec<ContactPair>,

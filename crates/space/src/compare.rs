@@ -1,4 +1,4 @@
-//! A three-dimensional run as one side of a comparison.
+//! Implements [`Comparable`] for three-dimensional results.
 
 use std::ops::ControlFlow;
 
@@ -86,7 +86,8 @@ impl Comparable for Answer {
     }
 }
 
-/// Returns the displacements (cm) of the first barrel of the top level and of the first rack of the bottom level.
+/// Returns the displacement histories of the first barrel of the top level and of the first rack of the bottom level,
+/// each across and along the barrels. A history consists of the times (s) and the displacements (cm).
 fn traced(run: &Run) -> Vec<(Traced, [Vec<f64>; 2])> {
     let first =
         |kind, level| run.stack.of_kind(kind).find(|body| run.stack.parts[*body].level == level);

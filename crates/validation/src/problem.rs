@@ -189,8 +189,7 @@ pub fn absolute(exact: f64, limit: f64) -> Reference {
 }
 
 impl Reference {
-    /// Returns the reference with its own limit at fast effort. The limit is relative or absolute, like that at full
-    /// effort.
+    /// Sets the tolerance at fast effort. `limit` is relative or absolute, like the tolerance at full effort.
     #[must_use]
     pub fn fast(self, limit: f64) -> Self {
         let fast = match self.tolerance {
@@ -230,8 +229,7 @@ impl Question {
         self.by(move |effort| refine(effort, exact, |level| answer(effort, level)))
     }
 
-    /// Adds a bisection between two brackets (see [`border`]), which are `1 - share` and `1 + share` times the exact
-    /// answer.
+    /// Adds a bisection (see [`border`]) between two bounds: `1 - share` and `1 + share` times the exact answer.
     pub fn at_border(
         self,
         share: f64,
@@ -275,10 +273,10 @@ pub fn halvings(effort: Effort) -> u32 {
     }
 }
 
-/// Finds by bisection the value at which `above` changes from `false` to `true`, between two brackets.
+/// Finds by bisection, between two bounds, the value at which `above` changes from `false` to `true`.
 ///
 /// # Errors
-/// If the brackets do not enclose a boundary, or if `above` fails.
+/// If `above` is `true` at the lower bound or `false` at the upper bound, or if `above` fails.
 pub fn border(
     (mut low, mut high): (f64, f64),
     halvings: u32,

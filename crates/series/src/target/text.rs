@@ -1,4 +1,5 @@
-//! Parses target spectra from text: a code and its parameters, such as `ec8:ag=0.3,site=B`.
+//! Parses target spectra from text. A text names a design code and its parameters, such as
+//! `ec8:ag=0.3,site=B`.
 
 use std::str::FromStr;
 

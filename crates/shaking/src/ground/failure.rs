@@ -37,13 +37,13 @@ pub enum GroundError {
         /// The available names.
         known: String,
     },
-    /// The requested unit is not a unit of acceleration files.
+    /// The unit that the scenario states for a file is not a supported unit of acceleration.
     #[error(
         "motion.unit = {unit} m/s² is not a unit of acceleration files: use 1 g, 0.1 g, 1 m/s^2, \
          1 cm/s^2, 1 mm/s^2, 1 ft/s^2 or 1 in/s^2"
     )]
     Unit {
-        /// The requested unit (m/s²).
+        /// The stated unit (m/s²).
         unit: f64,
     },
 }

@@ -212,7 +212,7 @@ static FIELDS: [Field; OF_SHOCK + 1] = {
     all
 };
 
-/// Number of groups of mutually exclusive fields in a shock.
+/// Number of groups of mutually exclusive fields among the fields of a shock.
 const EXCLUDED: usize = SHOCK.exclusive.len();
 
 /// Groups of mutually exclusive fields: the groups of a shock, and `sequence` paired with each field of a shock.
@@ -240,7 +240,7 @@ static EXCLUSIVE: [&[&str]; EXCLUDED + OF_SHOCK] = {
     all
 };
 
-/// The ground motion.
+/// The section `[motion]`.
 pub static MOTION: Section = Section {
     name: "motion",
     help: "The ground motion: one of `record`, `bundled`, `sine`, `pulse` and `none`.",

@@ -109,7 +109,7 @@ pub struct Sine {
     /// Number of cycles over which the amplitude grows from zero at the start; it falls to zero over as many cycles at
     /// the end.
     pub ramp_cycles: f64,
-    /// Direction.
+    /// Direction of the ground motion.
     pub direction: Direction,
 }
 
@@ -118,11 +118,11 @@ pub struct Sine {
 pub enum PulseKind {
     /// Acceleration in the form of the second derivative of a Gaussian.
     Ricker,
-    /// Acceleration in the form of half a sine wave.
+    /// Acceleration in the form of half a cycle of a sine.
     HalfSine,
-    /// Acceleration in the form of one sine wave.
+    /// Acceleration in the form of one full cycle of a sine.
     OneSine,
-    /// Acceleration in the form of one cosine wave.
+    /// Acceleration in the form of one full cycle of a cosine.
     OneCosine,
     /// Constant acceleration.
     Rectangular,
@@ -154,7 +154,7 @@ pub enum PulseKind {
 /// A pulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pulse {
-    /// Form.
+    /// Form of the pulse.
     pub kind: PulseKind,
     /// Peak acceleration or peak velocity; never a displacement.
     pub amplitude: Amplitude,
@@ -162,7 +162,7 @@ pub struct Pulse {
     pub period: f64,
     /// Time at which the pulse starts (s).
     pub start: f64,
-    /// Direction.
+    /// Direction of the ground motion.
     pub direction: Direction,
 }
 

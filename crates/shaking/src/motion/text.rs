@@ -32,7 +32,7 @@ pub fn read(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
     read_shock(reader)
 }
 
-/// Reads one shock: the ground motion without a sequence.
+/// Reads the description of one shock: a table `[motion]` without `sequence`, or one element of `sequence`.
 ///
 /// # Errors
 /// If a field is invalid. The error names the first such field, with its place in the file.

@@ -26,7 +26,7 @@ pub(crate) struct Loose {
     element: Element<Spatial>,
     /// Length (m) of the unloaded element minus the distance between its ends; negative for a pretensioned element.
     give: f64,
-    /// `true` for a guide on a body that may turn about the axis of the guide.
+    /// `true` for a guide whose first body may turn about the axis of the guide; see [`Guide::about_axis`].
     about_axis: bool,
     words: &'static Words,
 }
@@ -61,7 +61,7 @@ pub(crate) fn place(builder: &mut Builder<'_>) -> Result<(), AssembleError> {
 }
 
 impl Builder<'_> {
-    /// Returns the rotation of a body.
+    /// Returns the rotation from the frame of a body to the frame of the stack.
     fn turned(&self, body: BodyId) -> Rotation3 {
         self.bodies[body].pose.orientation.matrix()
     }
@@ -96,8 +96,8 @@ impl Builder<'_> {
         if self.spec.mirror { [right, left, near, away] } else { [left, right, near, away] }
     }
 
-    /// Returns the rack that is on the same level as `rack`, at a distance of the given numbers of columns and rows;
-    /// `None` if there is no such rack.
+    /// Returns the rack that is on the same level as `rack` and is offset from it by the given numbers of columns and
+    /// rows; `None` if there is no such rack.
     fn beside(&self, rack: BodyId, [columns, rows]: [i64; 2]) -> Option<BodyId> {
         let at = |id: BodyId| {
             let part = &self.parts[id];

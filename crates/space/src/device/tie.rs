@@ -10,7 +10,8 @@ use super::Loose;
 use crate::builder::Builder;
 use crate::stack::Stack;
 
-/// A side of a rack. In a mirrored stack, the left side is on the right, and the right side is on the left.
+/// A side of a rack to which a tie can be attached. In a mirrored stack, the left side is on the right, and the right
+/// side is on the left.
 struct End {
     name: &'static str,
     on: Side,

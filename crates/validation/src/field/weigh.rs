@@ -1,4 +1,5 @@
-//! Posterior of the unknowns given statements: draws of the prior, weighted by likelihoods.
+//! Posterior of the unknowns, given statements about shares of fallen barrels or stacks: draws from the prior, weighted
+//! by likelihoods.
 
 use barrelstack_motion::Random;
 

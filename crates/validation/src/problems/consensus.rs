@@ -31,7 +31,8 @@ const LEVELS: usize = 4;
 const STIFFNESS: f64 = 9.8e5;
 const DAMPING: f64 = 2200.0;
 
-/// Two drops (m): the first counts as a fall, and the second shows how much the result depends on this choice.
+/// Drops (m) of a barrel. A barrel that drops by the first distance counts as fallen. The second distance shows how
+/// much the result depends on this choice.
 const FALLS: [f64; 2] = [0.76, 0.2];
 
 /// Length of the runs (s).
@@ -63,8 +64,7 @@ fn first_fall() -> Problem {
         })
 }
 
-/// Creates the problem of the scene that is built from individual bodies. A file describes each body and the nodes of
-/// the racks.
+/// Creates the problem in which the scene is read from a file. The file describes each body and the nodes of the racks.
 fn written() -> Problem {
     Problem {
         id: "consensus/a-file".into(),
@@ -179,7 +179,7 @@ fn is_rack(body: usize) -> bool {
 }
 
 /// Runs the scene that is built from individual bodies. Returns, for each of the two distances in [`FALLS`], the time
-/// (s) at which the first barrel has dropped by this distance.
+/// (s) at which the first barrel has dropped by this distance; `None` if no barrel drops that far.
 fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     let step = 1e-4;
     let mut scene = Scene::of(eight_barrels(degrees)?).settled(1e-9)?;
@@ -201,7 +201,8 @@ fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     Ok(fallen)
 }
 
-/// Runs the most similar stack that a scenario can describe. Returns the time (s) at which the first barrel falls.
+/// Runs the stack that is most similar to the scene among those that a scenario can describe. Returns the time (s) at
+/// which the first barrel falls; `None` if no barrel falls.
 fn scenario(degrees: f64, end: f64) -> Result<Option<f64>, Failure> {
     let text = format!(
         r#"

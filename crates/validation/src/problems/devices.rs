@@ -76,7 +76,8 @@ pub(super) fn displacement(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64
     Ok(run.recording.times.iter().copied().zip(channel.values.iter().copied()).collect())
 }
 
-/// Returns the settings for chocks at an angle (rad) without a gap; the cradles are lower than the chocks.
+/// Returns the settings for chocks without a gap. The line from the center of a barrel to the top of a chock is at an
+/// angle (rad) from the vertical. The cradles are lower than the chocks.
 fn chocks(angle: f64) -> Vec<String> {
     vec![
         "stack.chock.levels=1".into(),
@@ -112,7 +113,7 @@ const BLOW: f64 = 0.05;
 const ARM: f64 = 0.5 * 0.645_918_367_346_938_8 + 0.015;
 
 /// Returns the smallest ground acceleration (g) that, applied for the time [`BLOW`], makes a barrel roll over the chock
-/// on which it leans; the chock is at an angle (rad).
+/// on which it leans. The angle (rad) of the chock is that of [`chocks`].
 ///
 /// The rotation θ of the barrel about the end of the chock follows `L θ'' = g sin θ − a cos θ` during the impulse;
 /// after the impulse, the barrel must pass the energy barrier `g L (1 − cos θ)`.

@@ -147,7 +147,7 @@ fn walking_stop() -> [Problem; 2] {
     ]
 }
 
-/// Returns the settings of a platform without friction.
+/// Returns the settings of a platform without friction on springs of the stiffness `recentring` (N/m).
 fn platform(recentring: f64) -> Vec<String> {
     vec![
         "stack.isolator.path=\"flat\"".to_owned(),
@@ -207,7 +207,8 @@ fn with_mass(mass: f64, tuning: Tuning, motion: (f64, f64), seconds: f64) -> Res
     Ok(run)
 }
 
-/// Creates the problem of the lower or the upper natural frequency of a platform with a tuned mass, without damping.
+/// Creates the problem of a natural frequency of a platform with a tuned mass, without damping: the lower frequency if
+/// `upper` is 0, and the upper frequency if it is 1.
 fn frequency(upper: usize) -> Problem {
     let (mass, tuning) = (150.0, Tuning { frequency: 0.9, damping_ratio: 0.0 });
     let whole = SPRINGS / ABOARD;

@@ -156,7 +156,8 @@ fn rest() -> Problem {
     })
 }
 
-/// Returns `true` if a stack of `n` bricks stands whose overhangs are `share` times the harmonic overhangs.
+/// Returns `true` if a stack of `n` bricks stands. The overhangs of the bricks are `share` times the
+/// harmonic overhangs.
 fn stands(n: u32, share: f64) -> Result<bool, Failure> {
     let (length, height) = (1.0, 0.2);
     // The lowest brick lies on a table that ends at x = 0; brick i from the top overhangs the brick below by L/2i.

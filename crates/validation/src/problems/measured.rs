@@ -50,7 +50,8 @@ fn period(name: &str, width: f64, height: f64) -> Problem {
     })
 }
 
-/// Creates the problem of the rotation after three impacts of a block whose contact was calibrated at the first impact.
+/// Creates the problem of the peak rotation of a block after three impacts. The damping of the contact is calibrated so
+/// that the first impact has the measured ratio of angular velocities.
 fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
     let (radius, alpha) = dimensions(width, height);
     let exact = (0..3).fold(0.5, |share, _| theory::next_peak(alpha, share, ratio * ratio));

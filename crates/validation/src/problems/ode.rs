@@ -293,8 +293,8 @@ fn flight() -> Problem {
     })
 }
 
-/// Returns the block that the problems of the module `statistics` subject to an ensemble of records, as a block of the
-/// independent integrator of this crate.
+/// Returns the block that the module `statistics` subjects to an ensemble of records, in the form that the independent
+/// integrator of this crate takes.
 fn rigid() -> Rocker {
     let alpha = 0.25;
     let restitution = theory::housner_restitution(alpha);

@@ -7,8 +7,8 @@ use crate::{Effort, Failure, Outcome, Problem};
 use barrelstack::overlap::Boundaries;
 use barrelstack::scenario::{RackKind, Scenario, catalog};
 
-/// Creates the problem of the deepest overlap of two bodies without a common seat. Stacks of all kinds are strongly
-/// shaken, and all frames until the bodies come to rest are checked.
+/// Creates the problem of the deepest overlap of two bodies neither of which rests on the other in the initial stack.
+/// Stacks of all kinds are strongly shaken, and all frames until the bodies come to rest are checked.
 pub(super) fn problem() -> Problem {
     setting(
         "solids/overlap-of-falling-stacks",
@@ -55,14 +55,15 @@ pub(super) fn problem() -> Problem {
 /// Deepest overlaps (m) that occurred.
 #[derive(Default)]
 struct Survey {
-    /// Deepest overlap of two bodies without a common seat.
+    /// Deepest overlap of two bodies neither of which rests on the other in the initial stack.
     loose: f64,
-    /// Deepest overlap of two bodies at their common seat.
+    /// Deepest overlap of two bodies one of which rests on the other in the initial stack.
     seat: f64,
-    /// Deepest overlap, in the last frame, of two bodies without a common seat.
+    /// The same as `loose`, but only in the last frame.
     end: f64,
+    /// The same as `seat`, but only in the last frame.
     seat_end: f64,
-    /// Largest residual of the energy balance.
+    /// Largest residual of the energy balance, as a fraction of the throughput of energy.
     balance: f64,
 }
 

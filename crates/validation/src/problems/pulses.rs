@@ -10,9 +10,9 @@ use super::housner::{firm, slender};
 const CLOSED: &str = "Makris and Roussos 2000, Zhang and Makris 2001";
 const TABLE: &str = "Zhang and Makris 2001, event-driven integration";
 
-/// Frequency parameter p (rad/s) of the tabulated block.
+/// Frequency parameter p (rad/s) of the block for which the boundaries are published.
 const RATE: f64 = 2.14;
-/// Slenderness angle α (rad) of the tabulated block.
+/// Slenderness angle α (rad) of the block for which the boundaries are published.
 const ALPHA: f64 = 0.25;
 
 /// Shape of a pulse.

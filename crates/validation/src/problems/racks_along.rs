@@ -120,13 +120,15 @@ fn wedged() -> f64 {
     FRICTION / cos(CRADLE.to_radians())
 }
 
-/// Returns the smallest horizontal ground acceleration (g) that makes a barrel slide on two rails that raise its right
-/// end by an angle (rad).
+/// Returns the smallest horizontal ground acceleration (g) that makes a barrel slide on two rails. The rails tilt the
+/// barrel by an angle (rad), so that its right end is higher.
 ///
 /// The barrel slides toward the right end or, with `side = -1`, away from it. The staves form an arc about a point C
 /// high above the barrel, so the barrel slides by rotating about C. The balance of forces is
 /// `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂ t₂) + m (A, −g) = 0`, and the balance of moments about C is
-/// `m d × (A, −g) = μ (N₁ + N₂) R`; μ is the coefficient of [`wedged`].
+/// `m d × (A, −g) = μ (N₁ + N₂) R`. N are the normal forces at the rails, n the unit vectors from the contacts to C,
+/// and t the unit vectors of the friction forces. A is the magnitude of the ground acceleration, R the radius of the
+/// arc, d the vector from C to the center of the barrel, and μ the coefficient of [`wedged`].
 fn sliding(angle: f64, side: f64) -> f64 {
     let [length, head, bilge] = BARREL;
     let friction = wedged();
