@@ -13,7 +13,7 @@ pub struct Applied<S: Space> {
     pub force: S::Vector,
     /// Point (m) at which the force acts, in the frame of the body.
     pub point: S::Vector,
-    /// Moment (N·m), in the inertial frame, that acts on the body in addition to the force.
+    /// Moment (N·m), in the inertial frame, in addition to the moment of the force about the center of mass.
     pub moment: S::Spin,
 }
 

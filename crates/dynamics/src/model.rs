@@ -79,8 +79,8 @@ pub struct Fast<R> {
     /// Displacement (m) along the contact normal during a whole step, above which the step is divided. Otherwise the
     /// spring and the damper of the contact would engage or release too abruptly.
     pub whole_step_way: R,
-    /// Approach speed (m/s) above which an impact counts as hard. After a hard impact, the substeps are half as long
-    /// until no substeps are needed anymore.
+    /// Approach speed (m/s) above which an impact counts as hard. As soon as a hard impact is predicted, the substeps
+    /// are half as long, until no substeps are needed anymore.
     pub hard: R,
 }
 

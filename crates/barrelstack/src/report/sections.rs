@@ -190,8 +190,8 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
     Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
-/// Returns the range of the values up to half a second after the collapse, with a margin. Returns `None` if there is no
-/// collapse; all values are then shown.
+/// Returns a range that contains zero and all values up to half a second after the collapse, with a margin. Returns
+/// `None` if there is no collapse, or if these values are all zero; all values are then shown.
 ///
 /// In a plot over this range, falling bodies leave the plot, as in the histories of Candia, de la Llera and Almazán
 /// (2008).

@@ -230,8 +230,8 @@ struct Seating {
     /// Height (m) of the right rail above the mean height of both rails; the left rail is below the mean by the same
     /// amount.
     ///
-    /// A rail lies between a barrel below and a barrel above, which have the same inclination. The top and the
-    /// underside of the rail therefore rise by the same amount, so that the rail keeps its thickness.
+    /// A rail lies between a barrel below and a barrel above, which have the same inclination. Since barrels are
+    /// symmetric, the top and the underside of the rail shift by the same amount, so that the rail keeps its thickness.
     rise: f64,
 }
 

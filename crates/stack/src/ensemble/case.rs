@@ -58,7 +58,8 @@ pub struct CaseResult {
     /// Demands over the whole run.
     pub demands_whole_run: Demands,
     /// Pairs of bodies of which one supports the other, and pairs that have touched during the run: the name of each
-    /// pair, its force at rest, and its largest forces. Empty if the case could not run or is invalid.
+    /// pair, its force at rest, and its largest forces. Empty if the stack was not shaken, or if the case was stopped
+    /// or is invalid.
     pub joints: Vec<(String, Joint)>,
     /// Largest displacement (m) of a barrel relative to the ground at the end of the run: along x in a planar model,
     /// horizontal in a three-dimensional model. `None` if the stack has no barrels or was not shaken, or if the case

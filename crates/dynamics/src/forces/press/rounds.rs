@@ -16,7 +16,7 @@ const SLACK: f64 = 1e-9;
 const COMPANION: f64 = 0.01;
 
 /// Sine of an angle of about 45°. A round piece faces a side of the other body if the direction toward that side lies
-/// outside the [limits](Round::limits) of the piece by at most this angle.
+/// within the [limits](Round::limits) of the piece, or outside of them by at most this angle.
 const FACES: f64 = 0.7;
 
 /// Distance (m) outside the core of the other body up to which the center of a round piece is treated as inside the
