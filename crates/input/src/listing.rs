@@ -38,7 +38,7 @@ impl Source {
         match self {
             Self::Given => "given".into(),
             Self::Default => "default".into(),
-            Self::Derived(words) => format!("default, unless given: {}", words.replace('`', "")),
+            Self::Derived(words) => format!("given or default ({})", words.replace('`', "")),
         }
     }
 }

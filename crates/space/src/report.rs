@@ -75,7 +75,7 @@ pub fn document(answer: &Answer) -> Document {
         blocks.push(Block::Figure(Figure::new(
             format!("sequence-{}", sight.words(&run.stack).replace(' ', "-")),
             format!(
-                "The {} in the view {}, at the decisive moments.",
+                "The {} viewed {}, at the decisive moments.",
                 if free { "scene" } else { "stack" },
                 sight.words(&run.stack)
             ),
@@ -99,7 +99,7 @@ pub fn document(answer: &Answer) -> Document {
             let table = interface_table(
                 "Force on the upper body, or on the body that is named first: the value of largest magnitude until \
                  the first loss of seat, and that of largest magnitude over the whole run, falls \
-                 included. Horizontal forces are resultants, whatever their direction.",
+                 included. Each horizontal force is the resultant of its two horizontal components.",
                 &summary.interfaces,
             );
             blocks.extend([heading("Forces at the seats"), Block::Table(table)]);

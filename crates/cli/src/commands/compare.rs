@@ -97,7 +97,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         (None, _) => super::layouts::compare(args, &requested, cellars),
         (Some(_), None) if args.usual => {
             bail!(
-                "--usual adds changes of the room of a cellar; leave --usual out, or give a cellar"
+                "--usual adds changes to the layout of a cellar; leave --usual out, or give a cellar"
             )
         }
         (Some(_), None) if args.tables.need(false).is_err() => {

@@ -128,7 +128,7 @@ fn layouts(args: &CompareArgs, given: Vec<Named>) -> anyhow::Result<(Vec<Named>,
     if runs.len() == 1 {
         let reasons = left_out.iter().map(|one| format!("{}: {}", one.name, one.reason));
         bail!(
-            "none of the changes that --usual adds can be compared with this cellar; {}",
+            "none of the changes that --usual adds can be applied to this cellar; {}",
             reasons.collect::<Vec<_>>().join("; ")
         );
     }

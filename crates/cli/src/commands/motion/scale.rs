@@ -22,7 +22,7 @@ pub(super) struct ScaleArgs {
     /// g".
     #[arg(long, value_name = "MEASURE=VALUE", conflicts_with = "factor")]
     to: Option<String>,
-    /// Component whose measure --to sets; by default, the first horizontal component. For both horizontal components:
+    /// Component to which --to refers; by default, the first horizontal component. For both horizontal components:
     /// rotd50 or rotd100 (median or largest value over all directions), or geomean.
     #[arg(long, value_name = "NAME", requires = "to")]
     of: Option<String>,
@@ -135,7 +135,9 @@ fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
         "m/s" => Dimension::VELOCITY,
         "m" => Dimension::LENGTH,
         "s" => Dimension::TIME,
-        unit => bail!("--to {text}: a value in {unit} cannot be given; choose another measure"),
+        unit => bail!(
+            "--to {text}: a motion cannot be scaled to a value in {unit}; choose another measure"
+        ),
     };
     let goal = quantity(&format!("--to {}", name.trim()), value, dimension)?;
     if goal <= 0.0 {
