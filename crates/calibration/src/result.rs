@@ -35,7 +35,7 @@ pub struct ModelShare {
 /// Result of a calibration from one test or several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Calibration {
-    /// Title on one line, such as "sag test rack.csv: sag proportional to load".
+    /// Title on one line, such as "tap test stack.csv: period of sway".
     pub title: String,
     /// Estimated parameters.
     pub estimates: Vec<Estimate>,

@@ -511,7 +511,7 @@ fn peaks(acceleration: f64, velocity: f64) -> String {
 }
 
 /// Describes an aisle over `of` variants: when the first barrel enters it, how much of it is covered at the end, and in
-/// how many variants it is blocked.
+/// how many variants it is blocked. If no barrel enters the aisle in any variant, the sentence states only this.
 fn of_aisle(aisle: &AisleAnswer, of: u32) -> String {
     let Some(first) = &aisle.first_barrel else {
         return format!("No barrel enters the aisle \"{}\".", aisle.name);

@@ -29,8 +29,8 @@ static KEPT: Mutex<Option<String>> = Mutex::new(None);
 /// Folders that may contain unfinished files.
 static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Time that work has to react to a stop request. The program ends within one second; the rest of this second is left
-/// for the message that states which results are kept.
+/// Time that work has to react to a stop request. If it does not react, the program ends within one second of the
+/// request; the rest of this second is left for the message that states which results are kept.
 const GRACE: Duration = Duration::from_millis(600);
 
 /// Time that stopped work has to print and write its finished results.

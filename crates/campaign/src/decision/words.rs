@@ -62,7 +62,8 @@ pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
     format!("{fallen} of {of} {what} {falls} own weight, before {they} shaken. ")
 }
 
-/// Formats an annual rate of collapse as a return period, such as "a collapse once in 500 years".
+/// Returns a clause that states an annual rate of collapse as a return period, such as "a stack collapses once in 500
+/// years on average".
 fn recurrence(rate: f64) -> String {
     if rate <= 0.0 {
         return "no stack collapses".to_owned();

@@ -61,8 +61,9 @@ impl Protocol {
         }
     }
 
-    /// Returns a faster protocol, with every `step`-th motion of each kind. Its name contains the step, since only
-    /// scores of the same protocol are comparable.
+    /// Returns a faster protocol, with every `step`-th pulse, both components of the bundled record, and one `step`-th
+    /// of the synthetic motions. Its name contains the step, since only scores of the same protocol are comparable.
+    /// For a `step` of at most 1, the protocol is returned unchanged.
     #[must_use]
     pub fn thinned(self, step: u32) -> Self {
         if step <= 1 {

@@ -201,7 +201,8 @@ impl ProcessArgs {
     }
 }
 
-/// Applies the chain to every channel, with corner frequencies derived from the noise of the channel.
+/// Applies the chain to every channel, with the corner frequencies that [`Record::noise_corners`] derives from the
+/// noise of the record.
 fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
     let criterion = NoiseCriterion::default();
     let mut after = before.clone();
