@@ -40,7 +40,7 @@ pub(crate) struct ProtectArgs {
     /// protections of the round before.
     #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=12))]
     rounds: u32,
-    /// Seed of the random motions and the random friction.
+    /// Seed of the random motions and of the random friction, stiffness and damping of the seats.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u32,
     /// Folder for the page and its studies; to continue after a stop, run the command again.

@@ -18,7 +18,7 @@ pub(crate) struct ScoreArgs {
     /// Score every rack and device of the catalog, in stacks like that of the scenario, and write a table, also as CSV.
     #[arg(long, conflicts_with = "json")]
     catalog: bool,
-    /// Use only one in NUMBER motions of the protocol, for a faster estimate; the sheet states this number.
+    /// Use South Napa and one in NUMBER of the other motions, for a faster estimate; the sheet states this number.
     #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
     one_in: u32,
     /// Folder for the sheet and its studies; to continue after a stop, run the command again.

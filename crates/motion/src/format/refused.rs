@@ -72,7 +72,7 @@ pub(crate) const SLAMMER: Format = Format {
             0,
             "an acceleration history",
             "SLAMMER's table of records",
-            "give a record file with the unit g and with the time step stated in this table",
+            "give a record file of this table, and state its unit, g, and the time step that this table states for it",
         ))
     },
 };

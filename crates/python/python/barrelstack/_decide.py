@@ -157,7 +157,7 @@ def heights(
     synthetic
         Number of synthetic motions in addition to the bundled record.
     seed
-        Seed of the random motions and the random friction.
+        Seed of the random motions and of the random friction, stiffness and damping of the seats.
     highest
         Number of levels of the highest stack, from 2 to 6.
     space
@@ -297,7 +297,7 @@ def protect(
     budget
         Maximum cost of the protection of one stack (US$).
     seed
-        Seed of the random motions and the random friction.
+        Seed of the random motions and of the random friction, stiffness and damping of the seats.
     progress
         As for :meth:`Scenario.run`.
 
