@@ -163,6 +163,8 @@ peer!(double, rapier2d_f64, f64);
 
 /// Box2D, through its bindings.
 mod flat {
+    use std::f64::consts::TAU;
+
     use boxdd::{
         BodyBuilder, BodyType, Foundation, MassData, Position, ShapeDef, SurfaceMaterial,
         WorldBuilder, shapes,
@@ -179,6 +181,22 @@ mod flat {
 
     fn vector(v: Vec2) -> boxdd::Vec2 {
         boxdd::Vec2::new(v.x as f32, v.z as f32)
+    }
+
+    /// Returns at most [`CORNERS`] corners of a convex polygon: those that reach furthest in evenly spaced
+    /// directions.
+    fn few(corners: Vec<Vec2>) -> Vec<Vec2> {
+        if corners.len() <= CORNERS {
+            return corners;
+        }
+        let furthest = |at: usize| {
+            let (z, x) = (TAU * (at as f64 + 0.5) / CORNERS as f64).sin_cos();
+            let reach = |corner: &Vec2| corner.x * x + corner.z * z;
+            corners.iter().copied().max_by(|a, b| reach(a).total_cmp(&reach(b)))
+        };
+        let mut some: Vec<Vec2> = (0..CORNERS).filter_map(furthest).collect();
+        some.dedup();
+        some
     }
 
     fn position(v: Vec2) -> Position {
@@ -217,9 +235,8 @@ mod flat {
                         world.body(id)?.create_circle(&surface, &ball)?;
                     }
                     Piece::Hull(corners) => {
-                        let every = corners.len().div_ceil(CORNERS);
-                        let some = corners.into_iter().step_by(every).map(vector);
-                        let hull = shapes::polygon_from_points(some, 0.0)?;
+                        let corners = few(corners).into_iter().map(vector);
+                        let hull = shapes::polygon_from_points(corners, 0.0)?;
                         world.body(id)?.create_polygon(&surface, &hull)?;
                     }
                 }

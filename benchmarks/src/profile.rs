@@ -23,12 +23,13 @@ const KINDS: [(&str, &str); 3] = [
 
 /// Phases by the beginning of the path below `crates`; the first that fits counts, and an empty name marks
 /// arithmetic, which belongs to the phase that needs it.
-const PHASES: [(&str, &str); 21] = [
+const PHASES: [(&str, &str); 23] = [
     ("dynamics/src/real.rs", ""),
     ("dynamics/src/math.rs", ""),
     ("dynamics/src/space/", ""),
     ("dynamics/src/lanes/bundle.rs", ""),
     ("dynamics/src/lanes/mod.rs", ""),
+    ("dynamics/src/lanes/lanewise.rs", ""),
     ("dynamics/src/pairs.rs", "broad search of pairs"),
     ("dynamics/src/contact_elements.rs", "broad search of pairs"),
     ("dynamics/src/shape/", "narrow: closest points"),
@@ -36,6 +37,7 @@ const PHASES: [(&str, &str); 21] = [
     ("dynamics/src/pair_frame.rs", "narrow: closest points"),
     ("dynamics/src/contact/", "contact forces"),
     ("dynamics/src/forces/", "contact forces"),
+    ("dynamics/src/model.rs", "contact forces"),
     ("dynamics/src/integrate/", "integration"),
     ("dynamics/src/state.rs", "integration"),
     ("dynamics/src/simulate.rs", "integration"),
@@ -194,7 +196,8 @@ fn phases(
 
 /// Returns the phase of a source line; `None` for arithmetic and for code outside the engine.
 fn phase(line: &str) -> Option<&'static str> {
-    let (_, path) = line.split_once("/crates/")?;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?;
+    let path = line.strip_prefix(root.to_str()?)?.strip_prefix("/crates/")?;
     let known = PHASES.iter().find(|(start, _)| path.starts_with(start));
     known.map_or(Some(OBSERVERS), |(_, phase)| Some(*phase).filter(|phase| !phase.is_empty()))
 }
