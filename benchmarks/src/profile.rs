@@ -1,4 +1,4 @@
-//! Shares of time by phase of the step, for three typical runs.
+//! Shares of time by phase of the step, for typical runs.
 //!
 //! `perf` of Linux samples this program while it runs one kind of work, and `addr2line` names the source
 //! lines of each sample, the inlined ones too. A sample belongs to the phase of the innermost line of the
@@ -15,9 +15,10 @@ use crate::{Failure, space, user};
 const RATE: &str = "1997";
 
 /// The kinds of work, by name, with their titles.
-const KINDS: [(&str, &str); 3] = [
+const KINDS: [(&str, &str); 4] = [
     ("standing", "plane, study standing"),
     ("collapse", "plane, study collapsing"),
+    ("demo", "plane, single run of the demo along"),
     ("space", "space, single run standing"),
 ];
 
@@ -59,6 +60,7 @@ pub(crate) fn work(kind: &str) -> Result<(), Failure> {
     match kind {
         "standing" => user::study(user::STANDING).map(drop),
         "collapse" => user::collapsing().map(drop),
+        "demo" => user::single("demo-napa", &["stack.view=longitudinal".to_owned()]).map(drop),
         "space" => space::single().map(drop),
         other => Err(format!("no work `{other}`").into()),
     }

@@ -16,7 +16,7 @@ const STANDING: [&str; 4] =
     ["stack.view=spatial", "stack.levels=4", "motion.scale.factor=0.5", "run.duration='10 s'"];
 
 /// Number of standing cases: twice the number of lanes for each of two cores.
-const CASES: u32 = 32;
+pub(crate) const CASES: u32 = 32;
 
 /// Measured time of some cases on all cores.
 pub(crate) struct Many {
@@ -54,6 +54,12 @@ pub(crate) fn single() -> Result<f64, Failure> {
 /// Runs variants of the stack that stands on all cores, in lanes.
 pub(crate) fn lanes() -> Result<Many, Failure> {
     many(&standing()?, CASES)
+}
+
+/// Builds and settles the same variants; their runs end at once.
+pub(crate) fn settling() -> Result<Many, Failure> {
+    let [view, levels, scale, _] = STANDING;
+    many(&scenario(&[view, levels, scale, "run.duration='1 ms'"])?, CASES)
 }
 
 /// Runs a number of variants of the demo in space on all cores, as for its answer.

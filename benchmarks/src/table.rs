@@ -166,8 +166,12 @@ fn peers() -> Result<Peers, Failure> {
 /// Measures the peers and prints what they cost.
 fn told(what: &str, stage: &peer::Stage<'_>) -> Result<Vec<peer::Cost>, Failure> {
     let costs = peer::costs(stage, peer::COARSE)?;
-    let words: Vec<String> =
-        costs.iter().map(|peer| format!("{} {:.2}", peer.engine, 1e3 * peer.second)).collect();
+    let words: Vec<String> = costs
+        .iter()
+        .map(|peer| {
+            format!("{} {:.2} (largest drop {:.2} m)", peer.engine, 1e3 * peer.second, peer.dropped)
+        })
+        .collect();
     println!("peers, {what}, ms per simulated second: {}", words.join("; "));
     Ok(costs)
 }
@@ -232,7 +236,7 @@ fn planar(cases: usize, plain: &plain::Costs, peers: &Peers) -> Result<Vec<Row>,
 fn middle(one: &[peer::Cost], other: &[peer::Cost]) -> Vec<peer::Cost> {
     let mean = |a: &peer::Cost| {
         let b = other.iter().find(|b| b.engine == a.engine).unwrap_or(a);
-        peer::Cost { engine: a.engine, second: 0.5 * (a.second + b.second) }
+        peer::Cost { second: 0.5 * (a.second + b.second), ..*a }
     };
     let mut all: Vec<peer::Cost> = one.iter().map(mean).collect();
     all.sort_by(|a, b| a.second.total_cmp(&b.second));
@@ -293,7 +297,7 @@ fn spatial() -> Result<Vec<Row>, Failure> {
     let settled = peer3::cost(&stage, peer3::SETTLED);
     for (step, found) in [(peer::COARSE, &coarse), (peer3::SETTLED, &settled)] {
         println!(
-            "Rapier 3-D, four levels, steps of {:.1} ms: {:.1} ms per simulated second; lowest drop {:.0} mm",
+            "Rapier 3-D, four levels, steps of {:.1} ms: {:.1} ms per simulated second (largest drop {:.0} mm)",
             1e3 * step,
             1e3 * found.second,
             1e3 * found.dropped
@@ -301,18 +305,23 @@ fn spatial() -> Result<Vec<Row>, Failure> {
     }
     let single = space::single()?;
     let lanes = space::lanes()?;
+    let settling = space::settling()?;
     let demo = space::demo(IN_SPACE)?;
     let scale = MANY_IN_SPACE / f64::from(IN_SPACE);
     println!(
-        "in space: {} variants of the standing stack, {} of them collapse; {IN_SPACE} of {MANY_IN_SPACE} variants of \
+        "in space: of 32 variants of the standing stack, {} collapse; building and settling take {:.0} % of their \
+         time, {:.0} ms each; {IN_SPACE} of {MANY_IN_SPACE} variants of \
          the demo were run, {} of them collapse, {:.1} s simulated each: {:.0} s for all of them by the clock",
-        IN_SPACE,
         lanes.collapsed,
+        100.0 * settling.spent / lanes.spent,
+        1e3 * settling.spent / f64::from(space::CASES),
         demo.collapsed,
         demo.simulated / f64::from(IN_SPACE),
         scale * demo.clock
     );
-    let peers = |found: &peer3::Found, engine| [peer::Cost { engine, second: found.second }];
+    let peers = |found: &peer3::Found, engine| {
+        [peer::Cost { engine, second: found.second, dropped: found.dropped }]
+    };
     let coarse = peers(&coarse, "Rapier 3-D");
     let fine = peers(&settled, "Rapier 3-D, steps of 0.5 ms");
     let mut rows = Vec::new();
@@ -341,6 +350,10 @@ fn spatial() -> Result<Vec<Row>, Failure> {
 fn commands(protect: bool) -> Result<Vec<Row>, Failure> {
     let program = program::path()?;
     let demo = program::demo(&program, 2)?;
+    println!(
+        "demo: the answer takes {:.1} s of processor time of all cores together, the answer with a page {:.1} s",
+        demo.spent[0], demo.spent[1]
+    );
     let row = |what: &str, time, target| Row::new(what, Figure::Seconds(time), target);
     let mut rows = vec![
         row("demo, first sentence, clock", demo.first, 2.0),
@@ -348,7 +361,11 @@ fn commands(protect: bool) -> Result<Vec<Row>, Failure> {
         row("demo, page written, clock", demo.page, 6.0),
     ];
     if protect {
-        rows.push(row("`protect` on the demo, clock", program::protect(&program)?, 180.0));
+        let (clock, spent) = program::protect(&program)?;
+        println!(
+            "`protect` on the demo takes {spent:.0} s of processor time of all cores together"
+        );
+        rows.push(row("`protect` on the demo, clock", clock, 180.0));
     }
     Ok(rows)
 }
