@@ -9,6 +9,9 @@ use crate::Failure;
 /// Time step (s) of a game at 240 Hz, which is the longest step with which stacks stand in Rapier.
 pub(crate) const COARSE: f64 = 1.0 / 240.0;
 
+/// Half the width (m) of the floor, which fallen barrels do not leave.
+const FLOOR: f32 = 100.0;
+
 /// A scene: bodies at rest on moving ground.
 pub(crate) struct Stage<'a> {
     pub(crate) model: &'a Model<Planar>,
@@ -84,7 +87,7 @@ macro_rules! peer {
         mod $module {
             use $rapier::prelude::*;
 
-            use super::{Piece, Stage, Vec2, pieces};
+            use super::{FLOOR, Piece, Stage, Vec2, pieces};
 
             fn vector(v: Vec2) -> Vector {
                 Vector::new(v.x as $real, v.z as $real)
@@ -97,7 +100,7 @@ macro_rules! peer {
                 let mut colliders = ColliderSet::new();
                 let friction = stage.friction.map(|friction| friction as $real);
                 let floor = bodies.insert(RigidBodyBuilder::kinematic_position_based().build());
-                let slab = ColliderBuilder::cuboid(10.0, 0.5);
+                let slab = ColliderBuilder::cuboid(FLOOR as $real, 0.5);
                 let slab = slab.translation(Vector::new(0.0, -0.5)).friction(friction[0]);
                 colliders.insert_with_parent(slab, floor, &mut bodies);
                 let all = stage.model.bodies().iter().zip(&stage.rest.poses).enumerate();
@@ -181,7 +184,7 @@ mod flat {
         WorldBuilder, shapes,
     };
 
-    use super::{Piece, Stage, Vec2, pieces};
+    use super::{FLOOR, Piece, Stage, Vec2, pieces};
     use crate::Failure;
 
     /// Number of parts of a step that Box2D recommends.
@@ -226,7 +229,7 @@ mod flat {
             ShapeDef::builder().density(0.0).material(material).build()
         };
         let floor = world.create_body(body().body_type(BodyType::Kinematic).build()?)?;
-        let slab = [(-10.0, -1.0), (10.0, -1.0), (10.0, 0.0), (-10.0, 0.0)];
+        let slab = [(-FLOOR, -1.0), (FLOOR, -1.0), (FLOOR, 0.0), (-FLOOR, 0.0)];
         let slab = slab.map(|(x, z)| boxdd::Vec2::new(x, z));
         world.body(floor)?.create_polygon(
             &surface(stage.friction[0])?,
