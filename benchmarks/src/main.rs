@@ -1,4 +1,4 @@
-//! Benchmarks: one run, many runs in lanes, and a game engine on the same scenes.
+//! Benchmarks: one run, many runs in lanes, and game engines and a plain loop on the same scenes.
 //!
 //! ```sh
 //! cargo xtask bench                     # all benchmarks; the last table compares targets with measurements
