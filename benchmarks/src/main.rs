@@ -1,9 +1,11 @@
-//! Benchmarks: one run, many runs in lanes, and a game engine on the same scenes.
+//! Benchmarks: one run, many runs in lanes, and game engines and a plain loop on the same scenes.
 //!
 //! ```sh
 //! cargo xtask bench                     # all benchmarks; the last table compares targets with measurements
 //! cargo xtask bench --cases 10000       # runs all 10,000 cases of the study, which takes minutes
 //! cargo xtask bench table               # only the last table
+//! cargo xtask bench table --protect     # with the command `protect`, which takes minutes
+//! cargo xtask bench profile             # shares of time by phase of the step; needs `perf`
 //! cargo xtask bench growth              # only the cost against the size
 //! cargo xtask bench history             # counts of work of some runs, compared with the last release
 //! cargo xtask bench history keep        # writes these counts to benchmarks/history.csv
@@ -20,7 +22,12 @@ mod history;
 mod lanes;
 mod memory;
 mod peer;
+mod peer3;
+mod plain;
+mod profile;
+mod program;
 mod scene;
+mod space;
 mod table;
 mod time;
 mod user;
@@ -38,13 +45,16 @@ fn main() -> Result<(), Failure> {
     match words.as_slice() {
         [] => all(CASES),
         ["--cases", cases] => all(cases.parse().map_err(|_| "--cases: expected a number")?),
-        ["table"] => table::print(CASES),
+        ["table"] => table::print(CASES, false),
+        ["table", "--protect"] => table::print(CASES, true),
+        ["profile"] => profile::print(),
+        ["work", kind] => profile::work(kind),
         ["growth"] => growth::with_size(),
         ["history"] => history::compare(false),
         ["history", "keep"] => history::compare(true),
         other => Err(format!(
-            "cargo xtask bench: unknown argument `{}`; expected nothing, `--cases NUMBER`, `table`, `growth`, \
-             `history` or `history keep`",
+            "cargo xtask bench: unknown argument `{}`; expected nothing, `--cases NUMBER`, `table`, \
+             `table --protect`, `profile`, `growth`, `history` or `history keep`",
             other.join(" ")
         )
         .into()),
@@ -61,5 +71,5 @@ fn all(cases: usize) -> Result<(), Failure> {
     println!();
     growth::with_size()?;
     println!();
-    table::print(cases)
+    table::print(cases, false)
 }

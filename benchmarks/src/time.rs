@@ -13,6 +13,29 @@ fn spent(start: Instant) -> f64 {
     nanoseconds.map_or_else(|| start.elapsed().as_secs_f64(), |ns| 1e-9 * ns)
 }
 
+/// Returns the processor time (s) that all threads of this process have used; `None` if the system does
+/// not report it.
+pub(crate) fn of_process() -> Option<f64> {
+    of_fields(14)
+}
+
+/// Returns the processor time (s) of all commands that this process has run to their end; `None` if the
+/// system does not report it.
+pub(crate) fn of_commands() -> Option<f64> {
+    of_fields(16)
+}
+
+/// Returns the sum (s) of two fields of the state of this process, the times in the program and in the
+/// system; fields are counted from 1.
+fn of_fields(first: usize) -> Option<f64> {
+    /// Ticks per second, the same on every Linux that reports this file.
+    const TICKS: f64 = 100.0;
+    let text = std::fs::read_to_string("/proc/self/stat").ok()?;
+    // The name of the program, the second field, is in parentheses and may contain spaces.
+    let fields = text.rsplit(')').next()?.split_whitespace().skip(first - 3).take(2);
+    Some(fields.filter_map(|field| field.parse::<f64>().ok()).sum::<f64>() / TICKS)
+}
+
 /// Shortest duration (s) of a measurement. Work is repeated until this time is reached, because the
 /// system updates processor times only every few milliseconds.
 const LONG: f64 = 0.1;

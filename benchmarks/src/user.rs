@@ -23,6 +23,9 @@ pub(crate) const STANDING: [f64; 2] = [0.01, 0.02];
 /// Range of the amplitude (m) in which half of the cases collapse.
 pub(crate) const HALF: [f64; 2] = [0.0165, 0.0265];
 
+/// Number of cases along each of two ranges of friction of the study in which every stack collapses.
+const GRID: usize = 8;
+
 /// Cost of a study.
 pub(crate) struct Cost {
     /// Processor time (s) per simulated second of a case.
@@ -50,6 +53,28 @@ pub(crate) fn study(amplitudes: [f64; 2]) -> Result<Cost, Failure> {
     Ok(Cost { second: spent / simulated.get(), collapsed: fallen.get() as f64 / CASES as f64 })
 }
 
+/// Measures a study on one core in which all stacks collapse within about two seconds and are followed
+/// to the end of the motion of the paper: 64 cases that differ in two friction coefficients.
+pub(crate) fn collapsing() -> Result<Cost, Failure> {
+    let case = |at: usize| {
+        let share = |at: usize| at as f64 / (GRID - 1) as f64;
+        let (seat, ground) = (0.18 + 0.07 * share(at % GRID), 0.40 + 0.14 * share(at / GRID));
+        let settings = [
+            "run.stop_after_collapse=\"20 s\"".to_owned(),
+            format!("interface.barrel-rack.friction.coefficient={seat}"),
+            format!("interface.rack-ground.friction.coefficient={ground}"),
+        ];
+        Ok(Prepared::new(Scenario::builtin(STACK, &settings)?)?)
+    };
+    let cases: Vec<Prepared> = (0..GRID * GRID).map(case).collect::<Result<_, Failure>>()?;
+    let results = Cell::new(Vec::new());
+    let spent = time::least_of(2, || drop(results.replace(on_one_core(&cases))));
+    let results = results.take();
+    let simulated: f64 = results.iter().filter_map(|result| result.end_time).sum();
+    let fallen = results.iter().filter(|result| result.first_fall.is_some()).count();
+    Ok(Cost { second: spent / simulated, collapsed: fallen as f64 / cases.len() as f64 })
+}
+
 /// Returns the time (s) that it takes to build and settle a case that differs from the other cases
 /// in its friction.
 pub(crate) fn settling() -> Result<f64, Failure> {
@@ -57,15 +82,25 @@ pub(crate) fn settling() -> Result<f64, Failure> {
     Ok(time::least(|| drop(on_one_core(&cases))) / CASES as f64)
 }
 
-/// Runs a study of standing cases that differ in their friction on all cores; returns the number of cores and the
-/// wall time (s).
-pub(crate) fn on_all_cores(cases: usize) -> Result<(usize, f64), Failure> {
+/// Time of a study on all cores.
+pub(crate) struct OnAllCores {
+    pub(crate) cores: usize,
+    /// Processor time (s) of all cores together.
+    pub(crate) spent: f64,
+    /// Time (s) by the clock.
+    pub(crate) clock: f64,
+}
+
+/// Runs a study of standing cases that differ in their friction on all cores.
+pub(crate) fn on_all_cores(cases: usize) -> Result<OnAllCores, Failure> {
     let ensemble = Ensemble { cases: differing(cases, DURATION)?, ..Ensemble::default() };
-    let start = Instant::now();
+    let (before, start) = (time::of_process(), Instant::now());
     let results = ensemble.run();
+    let clock = start.elapsed().as_secs_f64();
     assert!(results.iter().all(|result| result.outcome.is_ok()), "every case runs");
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    Ok((cores, start.elapsed().as_secs_f64()))
+    let spent = time::of_process().zip(before).map(|(now, before)| now - before);
+    Ok(OnAllCores { cores, spent: spent.unwrap_or(clock * cores as f64), clock })
 }
 
 /// Returns the ratio of the simulated time to the real time of a single run of a built-in scenario,
@@ -77,7 +112,7 @@ pub(crate) fn single(name: &str, settings: &[String]) -> Result<f64, Failure> {
 }
 
 fn on_one_core(cases: &[Prepared]) -> Vec<barrelstack::ensemble::CaseResult> {
-    let mut audience = Audience { tell: &mut |_| {}, stop: &|| false };
+    let mut audience = Audience { on_case: &mut |_| {}, stop: &|| false };
     simulate(cases, &mut audience).unwrap_or_default()
 }
 
