@@ -170,8 +170,8 @@ def test_a_force_beside_friction_stops_a_block_on_half_the_way() -> None:
     [
         (("none", (1.0, 0.0)), KeyError, "there is no body 'none'|there is no body \"none\""),
         (("ground", (1.0, 0.0)), ValueError, "follows the ground"),
-        (("block", 1.0), ValueError, "two components, x and z; found 1"),
-        (("block", (1.0, 0.0, 0.0)), ValueError, "two components, x and z; found 3"),
+        (("block", 1.0), ValueError, "two components, x and z; the number of values found is 1"),
+        (("block", (1.0, 0.0, 0.0)), ValueError, "two components, x and z; the number of values found is 3"),
         (("block", (float("nan"), 0.0)), ValueError, "not finite"),
         (("block", (1.0, 0.0), (0.0,)), ValueError, "a point has two components"),
         (("block", (1.0, 0.0), None, (1.0, 2.0)), ValueError, "a moment has one component"),

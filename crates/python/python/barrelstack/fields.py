@@ -97,7 +97,7 @@ class BarrelFields(TypedDict, total=False):
     """
     section_diameter: Quantity
     """Diameter of the circle that represents the barrel in the plane across the barrels. Default: the diameter of
-    the barrel above the rails of the rack.
+    the barrel where it rests on the rails of the rack.
     """
     stave_capacity: Quantity
     """Force between a barrel and a rack at which the staves are crushed. The default is an assumption: 4.3 MPa,
