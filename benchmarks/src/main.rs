@@ -15,6 +15,8 @@
 //! processor times if the operating system reports these, and apply to one core unless a table
 //! states otherwise.
 
+#![allow(clippy::disallowed_methods, reason = "measured times do not depend on the last bits of a sine")]
+
 mod accuracy;
 mod count;
 mod growth;

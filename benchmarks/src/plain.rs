@@ -1,7 +1,7 @@
 //! Yardstick: the eight barrels of [`Scene::consensus`] in a plain scalar loop, written as in C.
 //!
 //! The law is that of Candia, de la Llera and Almazán (2008): a spring at every contact point, with a
-//! damper that acts on approach only, and Coulomb friction as an elastic stick with damping. All pairs
+//! damper that acts on approach only, and Coulomb friction through a tangential spring with damping. All pairs
 //! are tested in every step; nothing is recorded. The loop shares no code with the engine.
 
 use std::f64::consts::TAU;
@@ -41,12 +41,12 @@ struct Body {
     torque: f64,
 }
 
-/// The stack, with the elongation (m) of the stick of every possible contact.
+/// The stack, with the elongation (m) of the tangential spring of every possible contact.
 #[derive(Clone)]
 struct Stack {
     bodies: [Body; BODIES],
     supports: [[f64; 2]; 4],
-    sticks: Vec<f64>,
+    springs: Vec<f64>,
     /// Displacement (m) and velocity (m/s) of the ground.
     ground: [f64; 2],
 }
@@ -170,7 +170,7 @@ impl Stack {
         let support = |side: f64, end: f64| [0.5 * side * PITCH + end * RADIUS * sin, height];
         let supports =
             [support(-1.0, -1.0), support(-1.0, 1.0), support(1.0, -1.0), support(1.0, 1.0)];
-        Self { bodies, supports, sticks: vec![0.0; 256], ground: [0.0; 2] }
+        Self { bodies, supports, springs: vec![0.0; 256], ground: [0.0; 2] }
     }
 
     /// Advances by one step; velocities are multiplied by `kept`, which is below 1 while the stack settles.
@@ -179,12 +179,12 @@ impl Stack {
             body.force = [0.0, -GRAVITY * body.mass];
             body.torque = 0.0;
         }
-        let mut stick = 0;
+        let mut spring = 0;
         for rack in (0..BODIES).step_by(3) {
-            self.rack(rack, &mut stick);
+            self.rack(rack, &mut spring);
         }
         for barrel in (0..BODIES).filter(|body| body % 3 > 0) {
-            self.barrel(barrel, &mut stick);
+            self.barrel(barrel, &mut spring);
         }
         for body in &mut self.bodies {
             for axis in 0..2 {
@@ -197,7 +197,7 @@ impl Stack {
     }
 
     /// Feet of a rack on the ground, and its supports on all barrels.
-    fn rack(&mut self, rack: usize, stick: &mut usize) {
+    fn rack(&mut self, rack: usize, spring: &mut usize) {
         let Body { at, angle, .. } = self.bodies[rack];
         let (sin, cos) = angle.sin_cos();
         let place =
@@ -205,7 +205,7 @@ impl Stack {
         for side in [-1.0, 1.0] {
             let point = place([side * HALF[0], -HALF[1]]);
             let touch = Touch { on: rack, by: None, point, normal: [0.0, 1.0], depth: -point[1] };
-            self.press(&touch, stick);
+            self.press(&touch, spring);
         }
         for support in self.supports {
             let point = place(support);
@@ -214,25 +214,25 @@ impl Stack {
                 let (x, z) = (point[0] - center[0], point[1] - center[1]);
                 let squared = x * x + z * z;
                 if squared >= RADIUS * RADIUS {
-                    self.sticks[*stick] = 0.0;
-                    *stick += 1;
+                    self.springs[*spring] = 0.0;
+                    *spring += 1;
                     continue;
                 }
                 let distance = squared.sqrt();
                 let normal = [x / distance, z / distance];
                 let touch =
                     Touch { on: rack, by: Some(barrel), point, normal, depth: RADIUS - distance };
-                self.press(&touch, stick);
+                self.press(&touch, spring);
             }
         }
     }
 
     /// A barrel on the ground, on the beams of the racks of other levels, and on the barrels after it.
-    fn barrel(&mut self, barrel: usize, stick: &mut usize) {
+    fn barrel(&mut self, barrel: usize, spring: &mut usize) {
         let at = self.bodies[barrel].at;
         let point = [at[0], at[1] - RADIUS];
         let touch = Touch { on: barrel, by: None, point, normal: [0.0, 1.0], depth: -point[1] };
-        self.press(&touch, stick);
+        self.press(&touch, spring);
         for rack in (0..BODIES).step_by(3).filter(|rack| rack / 3 != barrel / 3) {
             let beam = self.bodies[rack];
             let (sin, cos) = beam.angle.sin_cos();
@@ -241,22 +241,22 @@ impl Stack {
             let near = [own[0].clamp(-HALF[0], HALF[0]), own[1].clamp(-HALF[1], HALF[1])];
             let away = [own[0] - near[0], own[1] - near[1]];
             let away = [cos * away[0] - sin * away[1], sin * away[0] + cos * away[1]];
-            self.round(barrel, rack, away, RADIUS, stick);
+            self.round(barrel, rack, away, RADIUS, spring);
         }
         for other in (barrel + 1..BODIES).filter(|body| body % 3 > 0) {
             let other_at = self.bodies[other].at;
             let away = [at[0] - other_at[0], at[1] - other_at[1]];
-            self.round(barrel, other, away, 2.0 * RADIUS, stick);
+            self.round(barrel, other, away, 2.0 * RADIUS, spring);
         }
     }
 
     /// A barrel on another body, whose point nearest to its center is at `away` (m) from it, or whose center
     /// is, if both are barrels; they touch if this is less than `reach` (m).
-    fn round(&mut self, barrel: usize, by: usize, away: [f64; 2], reach: f64, stick: &mut usize) {
+    fn round(&mut self, barrel: usize, by: usize, away: [f64; 2], reach: f64, spring: &mut usize) {
         let squared = away[0] * away[0] + away[1] * away[1];
         if squared >= reach * reach || squared == 0.0 {
-            self.sticks[*stick] = 0.0;
-            *stick += 1;
+            self.springs[*spring] = 0.0;
+            *spring += 1;
             return;
         }
         let distance = squared.sqrt();
@@ -265,15 +265,15 @@ impl Stack {
         let point = [at[0] - RADIUS * normal[0], at[1] - RADIUS * normal[1]];
         self.press(
             &Touch { on: barrel, by: Some(by), point, normal, depth: reach - distance },
-            stick,
+            spring,
         );
     }
 
     /// Applies the force of a contact point, if it touches, to both bodies.
-    fn press(&mut self, touch: &Touch, stick: &mut usize) {
+    fn press(&mut self, touch: &Touch, spring: &mut usize) {
         let Touch { on, by, point, normal, depth } = *touch;
-        let stretch = &mut self.sticks[*stick];
-        *stick += 1;
+        let stretch = &mut self.springs[*spring];
+        *spring += 1;
         if depth <= 0.0 {
             *stretch = 0.0;
             return;

@@ -19,7 +19,7 @@ const KINDS: [(&str, &str); 4] = [
     ("standing", "plane, study standing"),
     ("collapse", "plane, study collapsing"),
     ("demo", "plane, single run of the demo along"),
-    ("space", "space, single run standing"),
+    ("space", "three dimensions, single run standing"),
 ];
 
 /// Phases by the beginning of the path below `crates`; the first that fits counts, and an empty name marks
@@ -189,10 +189,10 @@ fn phases(
     let words: String = addresses.map(|address| format!("{address:#x}\n")).collect();
     let mut input = child.stdin.take().ok_or("addr2line takes no input")?;
     let writer = std::thread::spawn(move || input.write_all(words.as_bytes()));
-    let told = child.wait_with_output()?;
+    let named = child.wait_with_output()?;
     writer.join().map_err(|_| "addr2line stopped")??;
     let mut found: Vec<(u64, &str)> = Vec::new();
-    for line in String::from_utf8(told.stdout)?.lines() {
+    for line in String::from_utf8(named.stdout)?.lines() {
         if let Some(address) = line.strip_prefix("0x") {
             found.push((u64::from_str_radix(address, 16)?, OTHER));
         } else if let Some((_, known)) = found.last_mut() {
@@ -216,9 +216,9 @@ fn phase(line: &str) -> Option<&'static str> {
 }
 
 fn output(command: &mut Command) -> Result<String, Failure> {
-    let told = command.output()?;
-    if !told.status.success() {
-        return Err(String::from_utf8_lossy(&told.stderr).into_owned().into());
+    let output = command.output()?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
     }
-    Ok(String::from_utf8_lossy(&told.stdout).into_owned())
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

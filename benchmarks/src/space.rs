@@ -46,7 +46,7 @@ pub(crate) fn single() -> Result<f64, Failure> {
     let scenario = standing()?;
     let found = run::run(&scenario)?;
     if found.outcome != Outcome::Stable {
-        return Err("the stack in space that is to stand does not".into());
+        return Err("the three-dimensional stack that should stand collapses".into());
     }
     Ok(found.end_time / time::least_of(3, || drop(run::run(&scenario))))
 }
@@ -62,7 +62,7 @@ pub(crate) fn settling() -> Result<Many, Failure> {
     many(&scenario(&[view, levels, scale, "run.duration='1 ms'"])?, CASES)
 }
 
-/// Runs a number of variants of the demo in space on all cores, as for its answer.
+/// Runs a number of three-dimensional variants of the demo on all cores, as for its answer.
 pub(crate) fn demo(cases: u32) -> Result<Many, Failure> {
     many(&scenario(&["stack.view=spatial"])?, cases)
 }

@@ -18,7 +18,7 @@ const STEP: f64 = 0.5e-3;
 const MANY: f64 = 10_000.0;
 const LENGTH: f64 = 20.0;
 
-/// Number of cases in space of the table, and how many of them are run.
+/// Number of three-dimensional cases of the table, and how many of them are run.
 const MANY_IN_SPACE: f64 = 1000.0;
 const IN_SPACE: u32 = 32;
 
@@ -158,13 +158,13 @@ fn peers() -> Result<Peers, Failure> {
     };
     Ok(Peers {
         agreed: peer::costs(&stage(&scene.model, &scene.rest, &large, 1.2), peer::COARSE)?,
-        standing: told("standing", &stage(&assembly.model, &rest, &small, 10.0))?,
-        falling: told("falling", &stage(&assembly.model, &rest, &large, 12.0))?,
+        standing: measured("standing", &stage(&assembly.model, &rest, &small, 10.0))?,
+        falling: measured("falling", &stage(&assembly.model, &rest, &large, 12.0))?,
     })
 }
 
 /// Measures the peers and prints what they cost.
-fn told(what: &str, stage: &peer::Stage<'_>) -> Result<Vec<peer::Cost>, Failure> {
+fn measured(what: &str, stage: &peer::Stage<'_>) -> Result<Vec<peer::Cost>, Failure> {
     let costs = peer::costs(stage, peer::COARSE)?;
     let words: Vec<String> = costs
         .iter()
@@ -271,7 +271,7 @@ fn singles(plain: &plain::Costs, peers: &Peers) -> Result<Vec<Row>, Failure> {
             friction: FRICTION,
             duration: 20.0,
         };
-        let costs = told(&format!("demo {words}"), &stage)?;
+        let costs = measured(&format!("demo {words}"), &stage)?;
         let speed = user::single("demo-napa", &settings)?;
         rows.push(
             Row::new(format!("single run, demo {words}"), Figure::Speed(speed), 100.0)
@@ -281,7 +281,7 @@ fn singles(plain: &plain::Costs, peers: &Peers) -> Result<Vec<Row>, Failure> {
     Ok(rows)
 }
 
-/// Rows of stacks in space.
+/// Rows of three-dimensional stacks.
 fn spatial() -> Result<Vec<Row>, Failure> {
     let scenario = space::standing()?;
     let ground = Ground::of(&scenario)?;
@@ -309,7 +309,7 @@ fn spatial() -> Result<Vec<Row>, Failure> {
     let demo = space::demo(IN_SPACE)?;
     let scale = MANY_IN_SPACE / f64::from(IN_SPACE);
     println!(
-        "in space: of 32 variants of the standing stack, {} collapse; building and settling take {:.0} % of their \
+        "three dimensions: of 32 variants of the standing stack, {} collapse; building and settling take {:.0} % of their \
          time, {:.0} ms each; {IN_SPACE} of {MANY_IN_SPACE} variants of \
          the demo were run, {} of them collapse, {:.1} s simulated each: {:.0} s for all of them by the clock",
         lanes.collapsed,
@@ -329,7 +329,7 @@ fn spatial() -> Result<Vec<Row>, Failure> {
         let what = |words: &str| format!("{words}{remark}");
         rows.push(
             Row::new(
-                what("space, single run, eight barrels standing"),
+                what("three dimensions, single run, eight barrels standing"),
                 Figure::Speed(single),
                 60.0,
             )
@@ -337,12 +337,16 @@ fn spatial() -> Result<Vec<Row>, Failure> {
         );
         let cost = Figure::Cost(lanes.spent / lanes.simulated);
         rows.push(
-            Row::new(what("space, lanes, eight barrels standing"), cost, 4.0)
+            Row::new(what("three dimensions, lanes, eight barrels standing"), cost, 4.0)
                 .beside(peer, None, 1.0),
         );
     }
     let all = Figure::Seconds(scale * demo.spent / CORES);
-    rows.push(Row::new("space, 1,000 variants of the demo (ten barrels) on two cores", all, 90.0));
+    rows.push(Row::new(
+        "three dimensions, 1,000 variants of the demo (ten barrels) on two cores",
+        all,
+        90.0,
+    ));
     Ok(rows)
 }
 

@@ -36,7 +36,8 @@ tasks:
   validate   runs every problem with an exact answer and writes a report; `--out DIR`, `--only TEXT`, `--fast`
   field      runs the hindcasts of real earthquakes, validation/field.md; `--records DIR`, `--only TEXT`, `--page`
   bench      measures speed, and that of game engines on the same scenes; `--cases N`, `table`, `table --protect`,
-             `profile` (shares of time by phase; needs perf), `growth`, `history` (counts of work compared with the last release; `history keep` saves them)
+             `profile` (shares of time by phase; needs perf), `growth`,
+             `history` (counts of work compared with the last release; `history keep` saves them)
   tests      only the tests of the workspace, on any system
   miri       runs the tests of unsafe code under Miri, with the nightly toolchain
   semver     compares the interfaces of the crates with those of the last release, or of a given revision,

@@ -137,6 +137,17 @@ fn too_few_runs_have_no_range() {
     assert!(serde_json::to_value(sheet.to_document()).unwrap()["range"].is_null());
 }
 
+/// The caption of the scale names the motions from which the scores of the catalog come.
+#[test]
+fn one_motion_in_four_is_what_the_caption_of_the_scale_states() {
+    // Both components of South Napa are in every protocol.
+    let motions = |protocol: &Protocol| protocol.periods.len() + 2 + protocol.synthetic as usize;
+    let whole = Protocol::rockscore();
+    let thinned = whole.clone().thinned(4);
+    assert_eq!((motions(&thinned), motions(&whole)), (8, 24));
+    assert_eq!((thinned.periods.as_slice(), thinned.synthetic), (&[0.5, 2.7][..], 4));
+}
+
 #[test]
 fn every_rack_and_device_of_the_catalog_is_in_the_league_or_is_reported() {
     let protocol = Protocol { synthetic: 0, ..brief(&[0.3]) };
