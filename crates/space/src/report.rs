@@ -190,8 +190,8 @@ fn variants(summary: &Summary) -> Option<Table> {
     let mut table = Table::new(
         format!(
             "Ranges span the 5th to the 95th percentile of the variants. The first body is the first that loses its \
-             seat; its direction is that in which it leaves the seat. The direction of a barrel that fell{} leads \
-             from its position at rest to its position at the end of the variant.",
+             seat; its direction is that in which it leaves the seat. The direction of a barrel that fell{} is \
+             that from its position at rest to its position at the end of the variant.",
             spread.counted("the first loss of a seat")
         ),
         &[("", ""), ("in three dimensions", "")],
