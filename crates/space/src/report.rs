@@ -248,7 +248,7 @@ fn variants(summary: &Summary) -> Option<Table> {
     if spread.collapsed > 0 {
         let four = |[right, left, away, near]: [u32; 4]| {
             format!(
-                "across {} ({right} right, {left} left), along {} ({away} away, {near} near)",
+                "across {} ({right} right, {left} left), along {} ({away} to the far side, {near} to the near side)",
                 right + left,
                 away + near
             )
