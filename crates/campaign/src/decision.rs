@@ -115,8 +115,8 @@ pub enum DecisionError {
     Column(&'static str),
     /// A cell does not hold a list of numbers, although its column requires one.
     #[error(
-        "the column `{column}` of the table of the study has a cell \"{found}\" where numbers separated by semicolons \
-         are expected; run the chunk of that row again"
+        "in the table of the study, a cell of the column `{column}` contains \"{found}\", but numbers separated by \
+         semicolons are expected; run the chunk that contains this cell again"
     )]
     List {
         /// Name of the column.

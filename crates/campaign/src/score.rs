@@ -231,7 +231,7 @@ pub enum ScoreError {
     )]
     NoStack(String),
     /// A state cannot be applied to the stack.
-    #[error("the state \"{state}\" cannot be evaluated for this stack")]
+    #[error("the stack cannot be scored in the state \"{state}\"")]
     State {
         /// Name of the state.
         state: String,
@@ -253,7 +253,7 @@ pub enum ScoreError {
     Decision(#[from] DecisionError),
     /// The runs do not determine a score.
     #[error(
-        "the runs determine no score of stacks in the state \"{state}\" that are shaken {direction}"
+        "no score can be computed from the runs of stacks in the state \"{state}\" that are shaken {direction}"
     )]
     Curve {
         /// Name of the state.

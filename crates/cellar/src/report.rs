@@ -228,10 +228,11 @@ pub(crate) fn count(count: &Count) -> Cell {
 fn aisles(summary: &CellarSummary) -> Table {
     Table::of(
         format!(
-            "Times are counted from the start of the shaking. Ranges cover 5 to 95 % of the variants in which the \
-             event happens, or all of these variants if they are fewer than {FEW}; shares of variants are given with \
-             their 95 % intervals. A barrel is in the aisle when its center is above it. Area counts as covered if \
-             any body is above it, at any height; an aisle is blocked if no path 0.6 m wide leads through it."
+            "Times are counted from the start of the shaking. Ranges span the 5th to the 95th percentile of the \
+             variants in which the event happens, or all of these variants if there are fewer than {FEW}; shares of \
+             variants are given with their 95 % intervals. A barrel is in the aisle when its center is above it. Area \
+             counts as covered if any body is above it, at any height; an aisle is blocked if no path 0.6 m wide \
+             leads through it."
         ),
         &summary.aisles,
         &[
@@ -256,8 +257,8 @@ fn aisles(summary: &CellarSummary) -> Table {
 
 fn places(summary: &CellarSummary) -> Table {
     Table::of(
-        "Share of the variants in which a path 0.6 m wide leads from a place to a door at the end, with its 95 % \
-         interval.",
+        "Share of the variants in which, at the end of the run, a path 0.6 m wide leads from the place to a door, with \
+         its 95 % interval.",
         &summary.places,
         &[
             ("place", "", &|place| Cell::text(&place.name)),
@@ -282,8 +283,8 @@ fn contacts(touched: &[&ShownStack]) -> Table {
         Cell::maybe(one.bodies.as_ref().map(|bodies| bodies[which].clone()))
     };
     Table::of(
-        "First contact of each stack with another stack in the run that is shown. A stack is knocked over if the \
-         contact comes before its first loss of seat.",
+        "First contact of each stack with another stack in the run that is shown. A stack counts as knocked over if \
+         the contact comes before its first loss of a seat.",
         touched,
         &[
             ("stack", "", &|one| Cell::text(&one.name)),

@@ -412,7 +412,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     }
     if let Some(spread) = room.spread.filter(|_| plan.stacks > 1) {
         all.push(format!(
-            "For each stack that falls by itself, {spread:.1} stacks fall in total, counting that stack."
+            "For each stack that falls by itself, {spread:.1} stacks fall on average, counting that stack."
         ));
     }
     if room.barrels_fallen.most > 0.0 {
@@ -432,9 +432,9 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     for place in &summary.places {
         if let Some(count) = &place.leads_out {
             all.push(format!(
-                "A path 0.6 m wide from the place \"{}\" to a door remains open in {}.",
-                place.name,
-                share(count, *of)
+                "In {}, a path 0.6 m wide from the place \"{}\" to a door remains open.",
+                share(count, *of),
+                place.name
             ));
         }
     }

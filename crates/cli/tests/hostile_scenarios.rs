@@ -81,7 +81,11 @@ fn files_that_are_no_text() {
     refuse("picture", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", &["byte 0", "UTF-8"]);
     refuse("UTF-16", &utf16("schema = 1\n"), &["byte 0", "UTF-8"]);
     refuse("zeros", &[0; 64], &[":1:", "not TOML"]);
-    refuse("large", &vec![b'#'; 2 << 20], &["2097152 bytes", "is it a motion record?"]);
+    refuse(
+        "large",
+        &vec![b'#'; 2 << 20],
+        &["2097152 bytes", "if it is a motion record, name it in"],
+    );
     refuse("a record", b"PEER STRONG MOTION\n .1 .2 -.3\n", &[":1:", "not TOML"]);
 }
 

@@ -38,7 +38,8 @@ pub enum ApplyError {
     },
     /// A component of the force, its point or its moment is not finite.
     #[error(
-        "the force on body \"{name}\", its point or its moment is not finite: every component must be a finite number"
+        "the force on body \"{name}\", its point of application or its moment is not finite: every component must be \
+         a finite number"
     )]
     NotFinite {
         /// Name of the body.

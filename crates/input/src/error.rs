@@ -93,7 +93,8 @@ pub enum Problem {
     },
     /// The file is far larger than any valid file.
     #[error(
-        "the file has {size} bytes, but at most {limit} bytes are read; is it a motion record?"
+        "the file has {size} bytes, but at most {limit} bytes are read; if it is a motion record, name it in \
+         motion.record of a scenario"
     )]
     TooLarge {
         /// Size in bytes.

@@ -190,8 +190,8 @@ fn variants(summary: &Summary) -> Option<Table> {
     let mut table = Table::new(
         format!(
             "Ranges span the 5th to the 95th percentile of the variants. The first body is the first that loses its \
-             seat; its direction is that in which it leaves the seat. The direction of a barrel that fell{} leads \
-             from its position at rest to its position at the end of the variant.",
+             seat; its direction is that in which it leaves the seat. The direction of a barrel that fell{} is \
+             that from its position at rest to its position at the end of the variant.",
             spread.counted("the first loss of a seat")
         ),
         &[("", ""), ("in three dimensions", "")],
@@ -248,7 +248,7 @@ fn variants(summary: &Summary) -> Option<Table> {
     if spread.collapsed > 0 {
         let four = |[right, left, away, near]: [u32; 4]| {
             format!(
-                "across {} ({right} right, {left} left), along {} ({away} away, {near} near)",
+                "across {} ({right} right, {left} left), along {} ({away} to the far side, {near} to the near side)",
                 right + left,
                 away + near
             )

@@ -204,7 +204,8 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             };
             let (change, [low, high]) = (points(pair.reduction.abs()), [low, high].map(points));
             let difference = if change < 1.0 {
-                "The shares that collapse differ by less than one percentage point".to_owned()
+                "The shares of variants that collapse differ by less than one percentage point"
+                    .to_owned()
             } else {
                 format!("The share that collapses is {change} percentage points {word} in {second}")
             };

@@ -137,7 +137,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         spread.barrels_fallen.map(|Range { p05, p95, least, most, .. }| {
             let fallen = format!("{} of {} {noun} fall", span(p05, p95, 0), spread.barrels);
             let counted = spread.counted("the first loss of a seat");
-            format!("{fallen}{counted} (all variants: {})", span(least, most, 0))
+            format!("{fallen}{counted} (in every variant: {})", span(least, most, 0))
         })
     });
     row("collapses by mode", &|spread| {

@@ -169,8 +169,8 @@ fn sequence(run: &Run, scene: &Arc<Scene>) -> Vec<Block> {
 
 fn fates(summary: &Summary) -> Table {
     Table::of(
-        "The largest slip is relative to the support of the body, while the stack stood. The displacement at the end \
-         is relative to the ground, from the position at rest.",
+        "The largest slip is that of the body relative to its support while the stack stood. The displacement at the \
+         end is relative to the ground, from the position at rest.",
         &summary.bodies,
         &[
             ("body", "", &|body| Cell::text(&body.name)),
@@ -297,7 +297,7 @@ fn stresses(run: &Run) -> Vec<Block> {
                  is drawn outward from the point at which it acts. It is the force divided by the length of boundary \
                  on which a contact is assumed to bear: at a node, half of the distance to each neighboring node; at \
                  a contact without nodes, 1 cm at full scale. The gray area shows the line load at rest. The area \
-                 behind the gray area shows the largest line load until the first loss of a seat."
+                 behind it shows the largest line load until the first loss of a seat."
                     .into(),
             ),
         );

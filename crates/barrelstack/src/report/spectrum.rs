@@ -137,7 +137,7 @@ fn spectrum(motion: &GroundMotion, rocking: Option<&Rocking>) -> Option<Figure> 
                 let label = format!("stack at {}", centimeters(one.amplitude));
                 plot.marks.push(Mark { at: one.period, label });
                 caption.push_str(
-                    " A dashed line also marks the period of the only swing of the stack.",
+                    " The stack swings only once; a dashed line also marks the period of this swing.",
                 );
             }
             (_, Some(_)) => {

@@ -1,7 +1,7 @@
 //! Describes the [`Remedy`] of a stack, the changes that would keep it standing, in sentences, a table and a plot.
 
 use barrelstack_report::{
-    Axis, Block, Cell, Figure, Mark, Plot, Series, SeriesStyle, Table, capital, listed,
+    Axis, Block, Cell, Figure, Mark, Plot, Series, SeriesStyle, Table, capital,
 };
 
 use super::remedy::{Remedy, Tried};
@@ -137,10 +137,16 @@ impl Remedy {
         format!(" At most {most} would fall (95 % confidence{choice}).")
     }
 
-    /// Returns the pretensions of the straps that were tried, such as "3, 4 and 5 kN".
+    /// Returns the pretensions of the straps that were tried, such as "3, 4 or 5 kN".
     fn pretensions(&self) -> String {
         let tried = self.tried.iter().filter_map(|one| one.pretension);
-        format!("{} kN", listed(tried.map(|pretension| (1e-3 * pretension).to_string())))
+        let tried: Vec<String> = tried.map(|pretension| (1e-3 * pretension).to_string()).collect();
+        match tried.split_last() {
+            Some((last, others)) if !others.is_empty() => {
+                format!("{} or {last} kN", others.join(", "))
+            }
+            _ => format!("{} kN", tried.concat()),
+        }
     }
 
     /// Returns a plot and a table of all changes; `as_it_is` is the share of variants that fall without a change.
@@ -196,10 +202,10 @@ impl Remedy {
              block at whose end too many variants have fallen; the share of stacks that fall with a rejected change \
              is therefore not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes \
              that may be tried{tried}. If friction, stiffness and damping of the seats are drawn from their \
-             distributions, the range over the uncertain constants contains the share of stacks that fall with a \
-             probability of 95 %; it includes the sampling error. The last column gives the share of random draws of \
-             the uncertain constants in which fewer stacks fall with the change than without it; each draw applies \
-             to all changes. Straps are assumed not to slip on the barrels and racks that they tie.",
+             distributions, the range over the uncertain constants contains, with a probability of 95 %, the share of \
+             stacks that fall; it includes the sampling error. The last column gives the share of random draws of the \
+             uncertain constants in which fewer stacks fall with the change than without it; the same draws are used \
+             for every change. Straps are assumed not to slip on the barrels and racks that they tie.",
             100.0 * self.required_share,
             self.candidates
         );

@@ -322,7 +322,7 @@ fn course_of(noun: &str, spread: &Spread) -> String {
         let shaken = spread.collapsed - spread.cannot_stand;
         let [from, to] = first.stated(shaken).map(|time| format!("{time:.1}"));
         if from == to {
-            format!("the first seat is lost after {from} s; ")
+            format!("the first seat is lost at {from} s; ")
         } else {
             format!("the first seat is lost between {from} and {to} s; ")
         }
@@ -487,12 +487,12 @@ mod tests {
         let of = |one: &Spread| headline(&[(View::Longitudinal, one)]);
         let said = of(&one);
         assert!(
-            said.ends_with(" The first seat is lost after 6.0 s; 8 of 10 barrels fall."),
+            said.ends_with(" The first seat is lost at 6.0 s; 8 of 10 barrels fall."),
             "{said}"
         );
         one.barrels_fallen = Some(range(10.0, 10.0, 10.0, 10.0));
         one.counted_for = Some(2.0);
-        assert!(of(&one).ends_with("after 6.0 s; all 10 barrels fall within 2 s of that."));
+        assert!(of(&one).ends_with("at 6.0 s; all 10 barrels fall within 2 s of that."));
         one.first_fall = None;
         assert!(of(&one).ends_with("after 6.0 s; no barrel falls within 2 s of that."));
     }

@@ -116,10 +116,9 @@ fn courses(found: &CellarComparison) -> Table {
         format!(
             "How the stacks fall: means over the variants with their 95 % intervals. Spread: number of stacks that \
              fall, divided by the number that fall by themselves. Aisles: share of the variants in which an aisle \
-             is blocked at the end. The time at which the first \
-             barrel enters an aisle is counted from the start of the shaking; its range covers 5 to 95 % of the \
-             variants in which a barrel enters an aisle, or all of them if they are fewer than {FEW}. Impact forces \
-             last a few milliseconds and grow with the assumed stiffness of the contact."
+             is blocked at the end. The time at which the first barrel enters an aisle is counted from the start of \
+             the shaking; its range spans the 5th to the 95th percentile of the variants in which a barrel enters an \
+             aisle, or all of them if there are fewer than {FEW}. Impact forces last a few milliseconds and grow with the assumed stiffness of the contact."
         ),
         rows(found),
         &[

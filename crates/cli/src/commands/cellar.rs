@@ -20,7 +20,7 @@ use crate::progress::Progress;
 /// Prints the plan of a cellar, and the problems found in the plan.
 pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCode> {
     if args.table {
-        bail!("--table tabulates one stack; leave --table out for a cellar");
+        bail!("--table is for a single stack; leave --table out for a cellar");
     }
     let plan = Plan::of(cellar).map_err(|error| placed(error.into(), cellar, &args.scenario))?;
     if let Some(path) = &args.plan {

@@ -107,7 +107,8 @@ fn engine(path: &Path) -> anyhow::Result<String> {
         })?;
     if !page.contains("<script type=\"text/plain\" id=\"engine\">") {
         bail!(
-            "{} does not contain the program: use barrelstack.html of a release, or make one with `cargo xtask web`",
+            "{} does not contain the program: use the barrelstack.html of a release, or make one with `cargo xtask \
+             web`",
             path.display()
         );
     }

@@ -76,11 +76,11 @@ class BarrelFields(TypedDict, total=False):
     base: Literal["bordeaux-225", "burgundy-228", "hogshead-300", "puncheon-500"]
     """Catalog barrel on which this barrel is based. Default: bordeaux-225."""
     bilge_diameter: Quantity
-    """Outer diameter of the barrel at the bilge, its widest part. Default: the value of the catalog."""
+    """Outer diameter of the barrel at the bilge, its widest part. Default: the value in the catalog."""
     capacity: Quantity
-    """Nominal volume of the barrel. Default: the value of the catalog."""
+    """Nominal volume of the barrel. Default: the value in the catalog."""
     empty_mass: Quantity
-    """Mass of the wood and hoops of the barrel. Default: the value of the catalog."""
+    """Mass of the wood and hoops of the barrel. Default: the value in the catalog."""
     fill: Literal["full-fluid", "full-frozen", "part", "empty"]
     """Contents of the barrel, and whether they rotate with it. Default: full-fluid."""
     filled: Union[float, Quantity]
@@ -88,9 +88,9 @@ class BarrelFields(TypedDict, total=False):
     Default: 0.9.
     """
     head_diameter: Quantity
-    """Outer diameter of the barrel at the heads. Default: the value of the catalog."""
+    """Outer diameter of the barrel at the heads. Default: the value in the catalog."""
     length: Quantity
-    """Overall length of the barrel, over the chimes. Default: the value of the catalog."""
+    """Overall length of the barrel, over the chimes. Default: the value in the catalog."""
     mass: Quantity
     """Mass of the barrel with its contents. Default: the empty mass plus 990 kg/m^3 times the filled part of the
     capacity.
@@ -105,7 +105,7 @@ class BarrelFields(TypedDict, total=False):
     each rail. Default: 43 kN.
     """
     stave_thickness: Quantity
-    """Thickness of staves and heads. Default: the value of the catalog."""
+    """Thickness of staves and heads. Default: the value in the catalog."""
 
 
 class BodyFields(TypedDict, total=False):
@@ -232,7 +232,7 @@ class CradleFields(TypedDict, total=False):
     """Cradle of a barrel in the plane across the barrels."""
 
     angle: Quantity
-    """Angle between the vertical and the line from the center of the barrel to each support. Default: the value of
+    """Angle between the vertical and the line from the center of the barrel to each support. Default: the value in
     the catalog.
     """
     type: Union[Literal["supports"], Literal["arc"]]
@@ -296,39 +296,40 @@ class FreeInterfaceFields(TypedDict, total=False):
     not matter.
     """
     damping: Quantity
-    """Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary. Default: in a stack: with
-    constants per seat, derived from the restitution that the catalog gives for the seats of the rack; with
-    constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping
-    force to the elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
-    `reference_speed` are given.
+    """Damping c of one seat or node, in N s/m, or of the boundary per meter of its length, in N s/m^2. Default: in
+    a stack with constants per seat, the damping that follows from the restitution that the catalog gives for
+    the seats of the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given either.
+    Or: Damping d: ratio of the damping force to the elastic force, per unit of penetration rate. Default: must
+    be given, unless `restitution` and `reference_speed` are given.
     """
     friction: "FrictionFields"
-    """Friction law, which gives the tangential force. Default: Coulomb friction with the coefficient of the pair
-    in a stack; must be given otherwise.
+    """Friction law, which gives the tangential force. Default: in a stack, Coulomb friction with the coefficient
+    of the pair; there is no default otherwise.
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
     """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: for constants
-    per seat, the mass that the catalog gives for the seats of the rack; must be given with `restitution`
-    otherwise.
+    per seat, the mass that the catalog gives for the seats of the rack; for other constants, there is no
+    default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
-    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack with
-    constants per seat and without `damping`, the restitution that the catalog gives for the seats of the rack.
-    Or: Ratio of normal speeds after and before an impact. Default: 0.3.
+    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack whose
+    constants are stated per seat and whose `damping` is not given, the restitution that the catalog gives for
+    the seats of the rack. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the
-    exponent 1.5 in N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the
-    catalog gives for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node,
-    1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or
+    N/m^2, respectively; with the exponent 1.5, in N/m^1.5 or N/m^2.5. Default: in a stack with a linear law per
+    seat, the stiffness that the catalog gives for the seats of the rack; in a stack with a linear law per node,
+    9.8 kN/cm; in a stack with a rebound law per node, 5e8 N/m^1.5 between two racks or between a fallen rack
+    and the ground, and 1.2e9 N/m^1.5 between other bodies; there is no default otherwise.
     """
     within_groups: bool
     """True if the interface also acts between bodies of the same `group`. Default: true."""
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
     reference_speed: Quantity
-    """Impact speed for which the restitution holds. Default: must be given with `restitution`."""
+    """Impact speed for which the restitution holds. Default: required if `restitution` is given."""
     speed: Quantity
     """Impact speed below which the contact also damps, so that bodies come to rest. Default: 0.1 m/s."""
 
@@ -337,7 +338,9 @@ class FrictionFields(TypedDict, total=False):
     """Tangential force of a contact."""
 
     coefficient: Union[float, Quantity]
-    """Kinetic coefficient of friction. Default: the coefficient of the pair in a stack; must be given otherwise."""
+    """Kinetic coefficient of friction. Default: in a stack, the coefficient of the pair; there is no default
+    otherwise.
+    """
     law: Union[Literal["coulomb"], Literal["regularized"], Literal["none"]]
     static_coefficient: Union[float, Quantity]
     """Static coefficient of friction, not below the kinetic one. Default: `coefficient`."""
@@ -346,8 +349,9 @@ class FrictionFields(TypedDict, total=False):
     tangential_stiffness_ratio: Union[float, Quantity]
     """Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, friction
     reverses sooner, but the time step must be smaller. Default: for constants per seat, the ratio that the
-    catalog gives for the seats of the rack: 2 on barrels, whose staves are softer across than along their
-    surface; 2 on posts; 4 on the ground, where tubes that do not lie flat bend; 1 otherwise.
+    catalog gives for the seats of the rack: 2 on barrels, whose staves are softer normal to their surface than
+    along it, 2 on posts, and 4 on the ground, where tubes bend because they do not lie flat; for other
+    constants, 1.
     """
     velocity: Quantity
     """Slip rate at which the friction is fully developed."""
@@ -377,37 +381,38 @@ class ImpactFields(TypedDict, total=False):
     basis: Literal["node", "length", "seat"]
     """Unit for which stiffness and damping are stated: one contact node, or one meter of boundary. Default: node."""
     damping: Quantity
-    """Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary. Default: in a stack: with
-    constants per seat, derived from the restitution that the catalog gives for the seats of the rack; with
-    constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping
-    force to the elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
-    `reference_speed` are given.
+    """Damping c of one seat or node, in N s/m, or of the boundary per meter of its length, in N s/m^2. Default: in
+    a stack with constants per seat, the damping that follows from the restitution that the catalog gives for
+    the seats of the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given either.
+    Or: Damping d: ratio of the damping force to the elastic force, per unit of penetration rate. Default: must
+    be given, unless `restitution` and `reference_speed` are given.
     """
     friction: "FrictionFields"
-    """Friction law, which gives the tangential force. Default: Coulomb friction with the coefficient of the pair
-    in a stack; must be given otherwise.
+    """Friction law, which gives the tangential force. Default: in a stack, Coulomb friction with the coefficient
+    of the pair; there is no default otherwise.
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
     """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: for constants
-    per seat, the mass that the catalog gives for the seats of the rack; must be given with `restitution`
-    otherwise.
+    per seat, the mass that the catalog gives for the seats of the rack; for other constants, there is no
+    default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
-    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack with
-    constants per seat and without `damping`, the restitution that the catalog gives for the seats of the rack.
-    Or: Ratio of normal speeds after and before an impact. Default: 0.3.
+    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack whose
+    constants are stated per seat and whose `damping` is not given, the restitution that the catalog gives for
+    the seats of the rack. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the
-    exponent 1.5 in N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the
-    catalog gives for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node,
-    1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or
+    N/m^2, respectively; with the exponent 1.5, in N/m^1.5 or N/m^2.5. Default: in a stack with a linear law per
+    seat, the stiffness that the catalog gives for the seats of the rack; in a stack with a linear law per node,
+    9.8 kN/cm; in a stack with a rebound law per node, 5e8 N/m^1.5 between two racks or between a fallen rack
+    and the ground, and 1.2e9 N/m^1.5 between other bodies; there is no default otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
     reference_speed: Quantity
-    """Impact speed for which the restitution holds. Default: must be given with `restitution`."""
+    """Impact speed for which the restitution holds. Default: required if `restitution` is given."""
     speed: Quantity
     """Impact speed below which the contact also damps, so that bodies come to rest. Default: 0.1 m/s."""
 
@@ -459,37 +464,38 @@ class InterfaceFields(TypedDict, total=False):
     boundary. Default: seat.
     """
     damping: Quantity
-    """Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary. Default: in a stack: with
-    constants per seat, derived from the restitution that the catalog gives for the seats of the rack; with
-    constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping
-    force to the elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
-    `reference_speed` are given.
+    """Damping c of one seat or node, in N s/m, or of the boundary per meter of its length, in N s/m^2. Default: in
+    a stack with constants per seat, the damping that follows from the restitution that the catalog gives for
+    the seats of the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given either.
+    Or: Damping d: ratio of the damping force to the elastic force, per unit of penetration rate. Default: must
+    be given, unless `restitution` and `reference_speed` are given.
     """
     friction: "FrictionFields"
-    """Friction law, which gives the tangential force. Default: Coulomb friction with the coefficient of the pair
-    in a stack; must be given otherwise.
+    """Friction law, which gives the tangential force. Default: in a stack, Coulomb friction with the coefficient
+    of the pair; there is no default otherwise.
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
     """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: for constants
-    per seat, the mass that the catalog gives for the seats of the rack; must be given with `restitution`
-    otherwise.
+    per seat, the mass that the catalog gives for the seats of the rack; for other constants, there is no
+    default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
-    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack with
-    constants per seat and without `damping`, the restitution that the catalog gives for the seats of the rack.
-    Or: Ratio of normal speeds after and before an impact. Default: 0.3.
+    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack whose
+    constants are stated per seat and whose `damping` is not given, the restitution that the catalog gives for
+    the seats of the rack. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the
-    exponent 1.5 in N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the
-    catalog gives for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node,
-    1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or
+    N/m^2, respectively; with the exponent 1.5, in N/m^1.5 or N/m^2.5. Default: in a stack with a linear law per
+    seat, the stiffness that the catalog gives for the seats of the rack; in a stack with a linear law per node,
+    9.8 kN/cm; in a stack with a rebound law per node, 5e8 N/m^1.5 between two racks or between a fallen rack
+    and the ground, and 1.2e9 N/m^1.5 between other bodies; there is no default otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
     reference_speed: Quantity
-    """Impact speed for which the restitution holds. Default: must be given with `restitution`."""
+    """Impact speed for which the restitution holds. Default: required if `restitution` is given."""
     speed: Quantity
     """Impact speed below which the contact also damps, so that bodies come to rest. Default: 0.1 m/s."""
 
@@ -640,12 +646,13 @@ class OutcomeFields(TypedDict, total=False):
     overturning_angle: Quantity
     """The stack counts as overturned if its bottom rack is inclined by more than this angle. Default: 30 deg."""
     rack_slide_ratio: Union[float, Quantity]
-    """A rack has left the barrels below when its displacement on them exceeds this fraction of its reach. Across
-    the barrels, the reach ends where friction cannot hold the rack on the curved sides of the barrels; along
-    the barrels, it ends where the rail of the rack passes the ends of the barrels. Default: 1.0.
+    """A rack has left the barrels below when its displacement on them exceeds this fraction of the largest
+    displacement at which they still carry it. Across the barrels, friction cannot hold the rack on their curved
+    sides beyond this displacement; along the barrels, the rail of the rack then passes their ends. Default:
+    1.0.
     """
     rocking_angle: Quantity
-    """A level counts as rocked over if its rack is inclined by more than this angle. Default: 20 deg."""
+    """A level counts as tipped over if its rack is inclined by more than this angle. Default: 20 deg."""
     seat_loss_ratio: Union[float, Quantity]
     """A barrel has lost its seat when the distance of its center from its position in the rack exceeds this number
     of barrel radii. Default: 0.5.
@@ -780,61 +787,61 @@ class RackFields(TypedDict, total=False):
     """A rack of the catalog, with any changes."""
 
     barrels: int
-    """Number of barrels side by side on one rack, across the barrels. Default: the value of the catalog."""
+    """Number of barrels side by side on one rack, across the barrels. Default: the value in the catalog."""
     barrels_deep: int
-    """Number of barrels end to end on one rack, along the barrels. Default: the value of the catalog."""
+    """Number of barrels end to end on one rack, along the barrels. Default: the value in the catalog."""
     base: Union[Literal["two-barrel"], Literal["two-barrel-feet"], Literal["single-bar"], Literal["four-barrel"], Literal["rack-on-rack"], Literal["two-barrel-inclined"], Literal["candia-2008"]]
     beam_height: Quantity
-    """Height of the beams of the rack, without its feet. Default: the value of the catalog."""
+    """Height of the beams of the rack, without its feet. Default: the value in the catalog."""
     clearance: Quantity
-    """Height of the lowest point of a carried barrel above the underside of the rack. Default: the value of the
+    """Height of the lowest point of a carried barrel above the underside of the rack. Default: the value in the
     catalog.
     """
     contact: Literal["nodes", "element", "rails"]
     """Division of a seat into contact elements: nodes along flat undersides, one element, or one element for each
-    of two rails. Constants stated per node apply to every element; constants stated per seat are divided among
-    the elements. Default: the value of the catalog.
+    of two rails. Constants stated per node apply to every contact element; constants stated per seat are
+    divided among the contact elements of the seat. Default: the value in the catalog.
     """
     cradle: Union[Literal["supports", "arc"], "CradleFields"]
-    """Cradle in which the rack carries a barrel. Default: the value of the catalog."""
+    """Cradle in which the rack carries a barrel. Default: the value in the catalog."""
     foot_half_length: Quantity
-    """Half the length of one foot of the rack. Default: the value of the catalog."""
+    """Half the length of one foot of the rack. Default: the value in the catalog."""
     foot_height: Quantity
     """Height of the feet under the beams, with one foot over each barrel below; 0 for straight tubes without feet.
-    Default: the value of the catalog.
+    Default: the value in the catalog.
     """
     incline: Quantity
     """Inclination of the barrels along their axes, positive if the rails raise the right end. Default: the value
-    of the catalog.
+    in the catalog.
     """
     mass: Quantity
-    """Mass of one rack. Default: the value of the catalog."""
+    """Mass of one rack. Default: the value in the catalog."""
     node_spacing: Quantity
-    """Distance between contact nodes on flat undersides. Default: the value of the catalog."""
+    """Distance between contact nodes on flat undersides. Default: the value in the catalog."""
     pitch: Quantity
-    """Distance between the axes of neighboring barrels. Default: the value of the catalog."""
+    """Distance between the axes of neighboring barrels. Default: the value in the catalog."""
     rail_half_spacing: Quantity
-    """Distance of each rail from the middle of a barrel, along the axis of the barrel. Default: the value of the
+    """Distance of each rail from the middle of a barrel, along the axis of the barrel. Default: the value in the
     catalog.
     """
     rail_width: Quantity
-    """Width of one rail, along the axis of the barrel. Default: the value of the catalog."""
+    """Width of one rail, along the axis of the barrel. Default: the value in the catalog."""
     seat_stroke: Quantity
-    """Penetration at a seat beyond which the impact law of the two bodies acts in addition. Default: the value of
+    """Penetration at a seat beyond which the impact law of the two bodies acts in addition. Default: the value in
     the catalog.
     """
     width: Quantity
-    """Overall width of the rack, across the barrels. Default: the value of the catalog."""
+    """Overall width of the rack, across the barrels. Default: the value in the catalog."""
     post_half_spacing: Quantity
-    """Distance of each post from the middle of the rack, across the barrels. Default: the value of the catalog."""
+    """Distance of each post from the middle of the rack, across the barrels. Default: the value in the catalog."""
     post_half_spacing_along: Quantity
-    """Distance of each post from the middle of the barrel beside it, along the barrels. Default: the value of the
+    """Distance of each post from the middle of the barrel beside it, along the barrels. Default: the value in the
     catalog.
     """
     post_height: Quantity
-    """Height from the foot of the post to the seat of the next rack. Default: the value of the catalog."""
+    """Height from the foot of the post to the seat of the next rack. Default: the value in the catalog."""
     post_spigot: Quantity
-    """Height by which the foot of the next rack overlaps the sides of the post. Default: the value of the catalog."""
+    """Height by which the foot of the next rack overlaps the sides of the post. Default: the value in the catalog."""
 
 
 class RecordFields(TypedDict, total=False):
@@ -880,8 +887,8 @@ class RunFields(TypedDict, total=False):
     """Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and
     all bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack
     has come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest",
-    the runs of the variants end as `imperfections.until` states. Default: "rest" for a stack, "duration" for a
-    free scene.
+    `imperfections.until` determines when the runs of the variants end. Default: "rest" for a stack, "duration"
+    for a free scene.
     """
     tolerance: Union[float, Quantity]
     """Largest relative error of one step. Default: 1e-6."""
@@ -1069,21 +1076,21 @@ class StackFields(TypedDict, total=False):
 
     azimuth: Quantity
     """Angle by which the stack is turned, counterclockwise viewed from above; at zero, `motion.component` shakes
-    the stack across the barrels, and the other horizontal component shakes it along the barrels. Default: 0 deg
-    in three dimensions; must not be given otherwise.
+    the stack across the barrels, and the other horizontal component shakes it along the barrels. Default: in
+    three dimensions, 0 deg; not allowed in planar models.
     """
     barrel: Union[Literal["bordeaux-225", "burgundy-228", "hogshead-300", "puncheon-500"], "BarrelFields"]
     """The barrel. Default: bordeaux-225."""
     chock: "ChockFields"
     """Chocks beside the barrels that keep them from rolling out."""
     columns: int
-    """Number of barrels per level, a multiple of the number that one rack carries: in a single plane, the barrels
-    in that plane; in both planes or in three dimensions, the barrels that lie side by side.
+    """Number of barrels per level, a multiple of the number that one rack carries. In a single plane, the barrels
+    in that plane are counted; in both planes or in three dimensions, the barrels that lie side by side.
     """
     columns_along: int
     """Number of barrels per level, counted along the barrels, if the model is in both planes or in three
-    dimensions. Default: the number that one rack carries, in both planes and in three dimensions; must not be
-    given otherwise.
+    dimensions. Default: in both planes and in three dimensions, the number that one rack carries; not allowed
+    in a single plane.
     """
     gap: Quantity
     """Clear distance between racks side by side. Default: 0.05 m."""
@@ -1149,8 +1156,8 @@ class TieFields(TypedDict, total=False):
     damping: Quantity
     """Damping of one tie while it is taut (force per rate of elongation). Default: 0 N s/m."""
     distance: Quantity
-    """Distance from the end of a rack to the wall or the ceiling; the default is the clearance of 18 inches that
-    one winery keeps from its walls (Press Democrat 2014). Default: 45 cm.
+    """Horizontal distance from the end of a rack to the wall, or vertical distance to the ceiling; the default is
+    the clearance of 18 inches that one winery keeps from its walls (Press Democrat 2014). Default: 45 cm.
     """
     levels: int
     """Number of levels with ties, counted from the top; 0 for none. Default: 0."""
@@ -1244,11 +1251,11 @@ class UnknownsFields(TypedDict, total=False):
     """
     static_friction: Union[float, Quantity]
     """Largest excess of the static over the kinetic friction coefficient of barrels on racks, as a fraction of the
-    kinetic coefficient. The excess is uniformly distributed from 0, drawn once for all seats, and added to the
-    stated excess. Tests of chestnut on chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not
-    drawn by default: in planar models, an excess of 0.4 changes the shares of collapses by less than their
-    sampling error. In three dimensions, it reduces the number of collapses of the demo with four levels from 53
-    to 39 of 64 variants, with a single seed. Default: 0.
+    kinetic coefficient. An additional excess, uniformly distributed between 0 and this value, is drawn once for
+    all seats and added to the stated excess. Tests of chestnut on chestnut gave an excess of 0.29 to 0.41
+    (Villar-García et al. 2020). Not drawn by default: in planar models, an excess of 0.4 changes the shares of
+    collapses by less than their sampling error. In three dimensions, it reduces the number of collapses of the
+    demo with four levels from 53 to 39 of 64 variants, with a single seed. Default: 0.
     """
     stick: Union[float, Quantity]
     """Standard deviation of the logarithm of the ratio of tangential to normal stiffness; one value is drawn for
@@ -1258,8 +1265,8 @@ class UnknownsFields(TypedDict, total=False):
     stiffness: Union[float, Quantity]
     """Standard deviation of ln k, where k is the stiffness of seats; one value is drawn for all seats. The default
     is an assumption, since nobody has measured these racks. With 0.6, nineteen in twenty variants have a k
-    within a factor of 3.2 of the stated value. This range reaches from the value measured by Candia, de la
-    Llera and Almazán (2008) to the value of a stave clamped between hoops. Default: 0.6.
+    within a factor of 3.2 of the stated value. This range extends from the value measured by Candia, de la
+    Llera and Almazán (2008) to the value for a stave clamped between hoops. Default: 0.6.
     """
 
 

@@ -204,8 +204,8 @@ pub enum AssembleError {
     Space,
     /// A planar analysis was requested for a three-dimensional scene.
     #[error(
-        "this analysis works in a plane, but the bodies of the scenario are three-dimensional: state planar bodies, \
-         with kind = \"free\""
+        "this analysis works in a plane, but the bodies of the scenario are three-dimensional: use a scenario with \
+         kind = \"free\", whose bodies are planar"
     )]
     FreeInSpace,
     /// The scenario uses a feature that is not supported in three dimensions.

@@ -80,8 +80,8 @@ section! {
     /// Side of the stack on which there is a wall or a ceiling. If the stack is mirrored, the wall or ceiling is on the
     /// other side.
     side: Side = Kind::Choice(names::<Side>), Default::Value("\"both\"");
-    /// Distance from the end of a rack to the wall or the ceiling; the default is the clearance of 18 inches that one
-    /// winery keeps from its walls (Press Democrat 2014).
+    /// Horizontal distance from the end of a rack to the wall, or vertical distance to the ceiling; the default is the
+    /// clearance of 18 inches that one winery keeps from its walls (Press Democrat 2014).
     distance: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.01, 20.0)), Default::Value("\"45 cm\"");
     /// Stiffness of one tie (force per elongation). The default is an assumption: an 8 mm steel cable has a stiffness

@@ -285,7 +285,7 @@ fn stokes_layer(half: f64, radius: impl Fn(f64) -> f64) -> f64 {
     0.5 * thickness * (staves + heads)
 }
 
-const CATALOG: Default = Default::Derived("the value of the catalog");
+const CATALOG: Default = Default::Derived("the value in the catalog");
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 0.01, above: false, greatest: 10.0 });
 

@@ -62,8 +62,8 @@ pub const BARRELS: &[CatalogBarrel] = &[
         stave_thickness: 0.027,
         empty_mass: 46.0,
         capacity: 0.225,
-        source: "Bordeaux export barrel, Dimensions of a Bordeaux Barrel (dimensionsguide.com); mass of the A.P. John \
-                 225 L barrel (apjohn.com.au, technical specifications)",
+        source: "Bordeaux export barrel; dimensions from Dimensions of a Bordeaux Barrel (dimensionsguide.com); mass \
+                 of the A.P. John 225 L barrel (apjohn.com.au, technical specifications)",
     },
     CatalogBarrel {
         name: "burgundy-228",
@@ -219,7 +219,7 @@ pub const RACKS: &[CatalogRack] = &[
         seats: ON_BARRELS,
         help: "A rack that lies on the barrels below with straight tubes.",
         source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which gives pitch and width (Wines & \
-             Vines 2016); clearance for 7 inches between the bilges of neighboring levels, so that six levels are \
+             Vines 2016); clearance of 7 inches between the bilges of neighboring levels, so that six levels are \
              18 ft high (UC Berkeley 2000); straight tubes without feet; mass, rails, tubes and cradle are assumptions",
     },
     CatalogRack {
@@ -291,7 +291,8 @@ pub const RACKS: &[CatalogRack] = &[
         seats: ON_BARRELS,
         help: "The rack of the paper, reconstructed where the paper gives no dimensions.",
         source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a solid beam on feet, \
-                 reconstructed so that one geometry shows the paper's modes, times, drift and stress amplification",
+                 reconstructed so that a single geometry reproduces the paper's collapse modes and times, drift and \
+                 stress amplification",
     },
 ];
 

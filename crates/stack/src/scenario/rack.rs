@@ -133,8 +133,8 @@ known! {
     /// Half the length of one foot of the rack.
     foot_half_length: f64 = size(1e-3, 10.0), CATALOG;
     /// Division of a seat into contact elements: nodes along flat undersides, one element, or one element for each of
-    /// two rails. Constants stated per node apply to every element; constants stated per seat are divided among the
-    /// elements.
+    /// two rails. Constants stated per node apply to every contact element; constants stated per seat are divided among
+    /// the contact elements of the seat.
     contact: SeatContact = Kind::Choice(names::<SeatContact>), CATALOG;
     /// Penetration at a seat beyond which the impact law of the two bodies acts in addition.
     seat_stroke: f64 = size(1e-4, 1.0), CATALOG;
@@ -142,7 +142,7 @@ known! {
     node_spacing: f64 = size(1e-3, 0.5), CATALOG;
 }
 
-const CATALOG: Default = Default::Derived("the value of the catalog");
+const CATALOG: Default = Default::Derived("the value in the catalog");
 
 const fn size(least: f64, greatest: f64) -> Kind {
     Kind::Quantity(&[Dimension::LENGTH], Range { least, above: false, greatest })

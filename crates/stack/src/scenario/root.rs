@@ -34,7 +34,7 @@ table! {
     title = Kind::Text, Default::Derived("name of the file");
     /// Built-in scenario, or file ending in `.toml`, whose values this scenario overrides.
     extends = Kind::Text, Default::Nothing;
-    /// Kind of the scene.
+    /// Kind of scene.
     kind = Kind::Choice(names::<SceneKind>), Default::Value("\"stack\"");
     /// The ground motion.
     motion = Kind::Table(&motion::MOTION), Default::Nothing;

@@ -85,8 +85,8 @@ section! {
     pub static RUN = "run", by method of METHODS;
     /// Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and all
     /// bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack has
-    /// come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest", the
-    /// runs of the variants end as `imperfections.until` states.
+    /// come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest",
+    /// `imperfections.until` determines when the runs of the variants end.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");
     /// Maximum time for which a run continues after the end of the motion if `until` is "rest" or "verdict".
@@ -142,11 +142,11 @@ section! {
     /// A body counts as fallen when its center is more than this distance below its position at rest.
     fall_drop: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"0.2 m\"");
-    /// A rack has left the barrels below when its displacement on them exceeds this fraction of its reach. Across the
-    /// barrels, the reach ends where friction cannot hold the rack on the curved sides of the barrels; along the
-    /// barrels, it ends where the rail of the rack passes the ends of the barrels.
+    /// A rack has left the barrels below when its displacement on them exceeds this fraction of the largest
+    /// displacement at which they still carry it. Across the barrels, friction cannot hold the rack on their curved
+    /// sides beyond this displacement; along the barrels, the rail of the rack then passes their ends.
     rack_slide_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("1.0");
-    /// A level counts as rocked over if its rack is inclined by more than this angle.
+    /// A level counts as tipped over if its rack is inclined by more than this angle.
     rocking_angle: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)), Default::Value("\"20 deg\"");
     /// The stack counts as overturned if its bottom rack is inclined by more than this angle.

@@ -181,18 +181,18 @@ const OWN: [Field; 9] = fields! {
     view = Kind::Choice(names::<Planes>), Default::Value("\"transverse\"");
     /// Number of levels of barrels.
     levels = LEVELS, Default::Required;
-    /// Number of barrels per level, a multiple of the number that one rack carries: in a single plane, the barrels in
-    /// that plane; in both planes or in three dimensions, the barrels that lie side by side.
+    /// Number of barrels per level, a multiple of the number that one rack carries. In a single plane, the barrels in
+    /// that plane are counted; in both planes or in three dimensions, the barrels that lie side by side.
     columns = COLUMNS, Default::Required;
     /// Number of barrels per level, counted along the barrels, if the model is in both planes or in three dimensions.
     columns_along = COLUMNS,
         Default::Derived(
-            "the number that one rack carries, in both planes and in three dimensions; must not be given otherwise",
+            "in both planes and in three dimensions, the number that one rack carries; not allowed in a single plane",
         );
     /// Angle by which the stack is turned, counterclockwise viewed from above; at zero, `motion.component` shakes the
     /// stack across the barrels, and the other horizontal component shakes it along the barrels.
     azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
-        Default::Derived("0 deg in three dimensions; must not be given otherwise");
+        Default::Derived("in three dimensions, 0 deg; not allowed in planar models");
     /// The barrel.
     barrel = Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL), Default::Derived("bordeaux-225");
     /// The rack.

@@ -38,8 +38,8 @@ section! {
     friction_correlation: f64 = Kind::Number(Range::between(0.0, 0.95)), Default::Value("0");
     /// Standard deviation of ln k, where k is the stiffness of seats; one value is drawn for all seats. The default is
     /// an assumption, since nobody has measured these racks. With 0.6, nineteen in twenty variants have a k within a
-    /// factor of 3.2 of the stated value. This range reaches from the value measured by Candia, de la Llera and Almazán
-    /// (2008) to the value of a stave clamped between hoops.
+    /// factor of 3.2 of the stated value. This range extends from the value measured by Candia, de la Llera and Almazán
+    /// (2008) to the value for a stave clamped between hoops.
     stiffness: f64 = DISPERSION, Default::Value("0.6");
     /// Standard deviation of ln k of impacts; one value is drawn for all impacts. The default is an assumption.
     impact_stiffness: f64 = DISPERSION, Default::Value("0.1");
@@ -48,11 +48,11 @@ section! {
     /// restitution between 0.69 and 0.88 in nineteen of twenty variants.
     damping: f64 = DISPERSION, Default::Value("0.3");
     /// Largest excess of the static over the kinetic friction coefficient of barrels on racks, as a fraction of the
-    /// kinetic coefficient. The excess is uniformly distributed from 0, drawn once for all seats, and added to the
-    /// stated excess. Tests of chestnut on chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not
-    /// drawn by default: in planar models, an excess of 0.4 changes the shares of collapses by less than their sampling
-    /// error. In three dimensions, it reduces the number of collapses of the demo with four levels from 53 to 39 of 64
-    /// variants, with a single seed.
+    /// kinetic coefficient. An additional excess, uniformly distributed between 0 and this value, is drawn once for all
+    /// seats and added to the stated excess. Tests of chestnut on chestnut gave an excess of 0.29 to 0.41
+    /// (Villar-García et al. 2020). Not drawn by default: in planar models, an excess of 0.4 changes the shares of
+    /// collapses by less than their sampling error. In three dimensions, it reduces the number of collapses of the demo with four
+    /// levels from 53 to 39 of 64 variants, with a single seed.
     static_friction: f64 = DISPERSION, Default::Value("0");
     /// Standard deviation of the logarithm of the ratio of tangential to normal stiffness; one value is drawn for all
     /// seats. Not drawn by default, because a factor of 2 in this ratio changes the shares of collapses by less than

@@ -401,7 +401,7 @@ fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     }
     if found.is_empty() {
         bail!(
-            "{}: expected StationXML with a sensitivity, found none; files that end with .xml: {}",
+            "{}: no file in this folder is StationXML with a sensitivity (files that end in .xml: {})",
             path.display(),
             files.len()
         );

@@ -66,19 +66,20 @@ const STIFFNESS: Field = Field::new(
         Range::POSITIVE,
     ),
     Default::Derived(
-        "in a stack: with a linear law per seat, the stiffness that the catalog gives for the seats of the rack; with \
-         a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between \
-         racks and from a fallen rack to the ground; must be given otherwise",
+        "in a stack with a linear law per seat, the stiffness that the catalog gives for the seats of the rack; in a \
+         stack with a linear law per node, 9.8 kN/cm; in a stack with a rebound law per node, 5e8 N/m^1.5 between two \
+         racks or between a fallen rack and the ground, and 1.2e9 N/m^1.5 between other bodies; there is no default \
+         otherwise",
     ),
-    "Stiffness k, with a linear law in N/m for a seat or node, or in N/m^2 for a meter of boundary; with the exponent \
-     1.5 in N/m^1.5 or N/m^2.5.",
+    "Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or N/m^2, \
+     respectively; with the exponent 1.5, in N/m^1.5 or N/m^2.5.",
 );
 
 const FRICTION_FIELD: Field = Field::new(
     "friction",
     Kind::Table(&FRICTION),
     Default::Derived(
-        "Coulomb friction with the coefficient of the pair in a stack; must be given otherwise",
+        "in a stack, Coulomb friction with the coefficient of the pair; there is no default otherwise",
     ),
     "Friction law, which gives the tangential force.",
 );
@@ -87,8 +88,8 @@ const RESTITUTION: Field = Field::new(
     "restitution",
     Kind::Number(Range::up_to(1.0)),
     Default::Derived(
-        "in a stack with constants per seat and without `damping`, the restitution that the catalog gives for the \
-         seats of the rack",
+        "in a stack whose constants are stated per seat and whose `damping` is not given, the restitution that the \
+         catalog gives for the seats of the rack",
     ),
     "Ratio of normal speeds after and before an impact, stated instead of the damping.",
 );
@@ -98,18 +99,19 @@ const LINEAR: &[Field] = &[
         "damping",
         Kind::Quantity(&[Dimension::DAMPING, Dimension::DAMPING_PER_LENGTH], Range::NOT_NEGATIVE),
         Default::Derived(
-            "in a stack: with constants per seat, derived from the restitution that the catalog gives for the seats of \
-             the rack; with constants per node, 22 N s/cm if the stiffness is not given either",
+            "in a stack with constants per seat, the damping that follows from the restitution that the catalog gives \
+             for the seats of the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given \
+             either",
         ),
-        "Damping c, in N s/m for a seat or node, or in N s/m^2 for a meter of boundary.",
+        "Damping c of one seat or node, in N s/m, or of the boundary per meter of its length, in N s/m^2.",
     ),
     RESTITUTION,
     Field::new(
         "reference_mass",
         Kind::Quantity(&[Dimension::MASS, Dimension::MASS_PER_LENGTH], Range::POSITIVE),
         Default::Derived(
-            "for constants per seat, the mass that the catalog gives for the seats of the rack; must be given with \
-             `restitution` otherwise",
+            "for constants per seat, the mass that the catalog gives for the seats of the rack; for other constants, \
+             there is no default, and the mass is required if `restitution` is given",
         ),
         "Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary.",
     ),
@@ -150,7 +152,7 @@ const LAWS: Variants = Variants {
                 Field::new(
                     "reference_speed",
                     Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE),
-                    Default::Derived("must be given with `restitution`"),
+                    Default::Derived("required if `restitution` is given"),
                     "Impact speed for which the restitution holds.",
                 ),
             ],
@@ -229,7 +231,7 @@ const COEFFICIENT: Range = Range::between(0.0, 5.0);
 const COEFFICIENT_FIELD: Field = Field::new(
     "coefficient",
     Kind::Number(COEFFICIENT),
-    Default::Derived("the coefficient of the pair in a stack; must be given otherwise"),
+    Default::Derived("in a stack, the coefficient of the pair; there is no default otherwise"),
     "Kinetic coefficient of friction.",
 );
 
@@ -247,8 +249,8 @@ table! {
             /// reverses sooner, but the time step must be smaller.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
                 Default::Derived("for constants per seat, the ratio that the catalog gives for the seats of the rack: \
-                    2 on barrels, whose staves are softer across than along their surface; 2 on posts; 4 on the \
-                    ground, where tubes that do not lie flat bend; 1 otherwise");
+                    2 on barrels, whose staves are softer normal to their surface than along it, 2 on posts, and 4 on \
+                    the ground, where tubes bend because they do not lie flat; for other constants, 1");
             /// Ratio of the damping of the tangential spring to the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }
