@@ -76,7 +76,7 @@ pub(crate) fn document(document: &impl Serialize) -> anyhow::Result<()> {
     raw(&whole)
 }
 
-/// `true` if a document was printed; no second document is printed then.
+/// `true` if a document has been printed; no second document is printed then.
 static PRINTED: AtomicBool = AtomicBool::new(false);
 
 /// Replaces control characters, which could disturb a terminal.
@@ -129,7 +129,7 @@ pub(crate) fn stopped(json: bool) {
     error_document(&ErrorDocument::of(&(&words, None, None, STATUS)), json);
 }
 
-/// Prints an error as a JSON document, if `json` is `true` and no document was printed yet.
+/// Prints an error as a JSON document, if `json` is `true` and no document has been printed yet.
 fn error_document(document: &ErrorDocument, json: bool) {
     if json && !PRINTED.load(Ordering::Relaxed) {
         // If standard output is closed, standard error has the message.

@@ -1,7 +1,7 @@
 //! Setup that must run before the Rust runtime starts.
 //!
 //! If standard output is closed (`>&-`), the runtime opens `/dev/null` in its place, and results
-//! would be lost without an error. If a file grows beyond the limit of the process (`ulimit -f`), a
+//! would be lost without an error. If a file exceeds the size limit of the process (`ulimit -f`), a
 //! signal kills the process and leaves an incomplete file. Therefore a function that the loader calls
 //! tests standard output, and makes the process ignore this signal. On systems whose loader calls no
 //! such function, neither condition is detected.

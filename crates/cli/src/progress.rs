@@ -13,7 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::interrupt::Interrupt;
 use crate::printer;
 
-/// Interval between lines if the output is not a terminal.
+/// Interval between progress lines if the output is not a terminal.
 const EVERY: Duration = Duration::from_secs(5);
 
 /// Time that must be spent on work before its remaining time is predicted.
@@ -37,7 +37,7 @@ pub(crate) struct Progress {
     interrupt: Interrupt,
 }
 
-/// Progress bar on a terminal, if requested. The bar is removed when this value is dropped, also
+/// Progress bar on a terminal, if requested. The bar is removed when this value is dropped, even
 /// after an error.
 pub(crate) struct Bar(pub(crate) Option<ProgressBar>);
 
@@ -94,8 +94,8 @@ impl Progress {
         }
     }
 
-    /// Reports that `done` of `of` items are finished in a part of the work, which other parts may follow. `things` is
-    /// the noun for the items.
+    /// Reports that `done` of `of` items are finished in one part of the work; other parts may follow. `things` is the
+    /// noun for the items.
     pub(crate) fn counted_of_part(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.lines.part();
         self.counted(done, of, things)
@@ -143,7 +143,7 @@ impl Progress {
 pub(crate) enum Of {
     /// One run, whose simulated time advances steadily.
     One,
-    /// Many runs side by side; the shortest runs end first.
+    /// Many runs in parallel; the shortest runs end first.
     Many,
 }
 
@@ -225,7 +225,7 @@ impl Lines {
         Self { last: wanted.then(|| Mutex::new(line)) }
     }
 
-    /// Marks the work as one of several parts, so that the total time is unknown.
+    /// Marks the work as one of several parts. The total time is then unknown, and no estimate of it is printed.
     fn part(&self) {
         if let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) {
             line.whole = true;
@@ -243,7 +243,8 @@ impl Lines {
     }
 
     /// Reports that the amount `done` of the total `of` is finished. If a line is due, prints an estimate of the total
-    /// time, or the text that `words` returns with an estimate of the remaining time, if there is one.
+    /// time, or the text that `words` returns. An estimate of the remaining time, if available, is appended to this
+    /// text.
     pub(crate) fn at(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) {
         let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) else { return };
         // If the amount decreases by more than half, the next part has started. A smaller decrease comes from another

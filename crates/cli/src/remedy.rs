@@ -1,4 +1,5 @@
-//! Advice after an error: the error of a library states what is wrong, and this module adds the option that helps.
+//! Advice after an error: the error message of a library states what is wrong, and this module adds what the user can
+//! do about it, such as an option to set.
 
 use anyhow::Error;
 use barrelstack::RunFailure;

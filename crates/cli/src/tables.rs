@@ -1,4 +1,4 @@
-//! Tables for spreadsheet programs, beside the CSV files of a folder.
+//! Tables for spreadsheet programs: workbooks, and CSV files with decimal commas.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ const WORKBOOK: &str = "tables.xlsx";
 /// Error message of a build that cannot write workbooks.
 const WITHOUT: &str = "this build of the command writes no workbooks; install it with `cargo install barrelstack --features xlsx`, \
                        or open the CSV files";
-/// Maximum size (bytes) of a file from which a workbook is made.
+/// Maximum size (bytes) of each file that [`TableArgs::write`] reads.
 const LIMIT: usize = 4 << 30;
 
 /// Options of the commands that write tables into a folder.
@@ -43,7 +43,8 @@ impl TableArgs {
         }
     }
 
-    /// Converts the CSV files among `files` to the requested notation, and appends the workbook if it is requested.
+    /// Converts the CSV files among `files` to decimal commas, and appends the workbook, each only if it is
+    /// requested.
     pub(crate) fn of(
         self,
         mut files: Vec<(String, Vec<u8>)>,
@@ -58,8 +59,8 @@ impl TableArgs {
         Ok(files)
     }
 
-    /// Reads the named files of a folder, writes a workbook of them if requested, and rewrites the CSV files in the
-    /// requested notation.
+    /// Reads the named files of a folder. Writes a workbook of them, and rewrites the CSV files with decimal commas,
+    /// each only if it is requested.
     pub(crate) fn write(self, folder: &Path, names: &[&str]) -> anyhow::Result<()> {
         if !self.xlsx && !self.decimal_comma {
             return Ok(());

@@ -175,7 +175,7 @@ pub fn document<T: Described>(title: &str) -> Value {
     schema
 }
 
-/// Returns key, unit and meaning of every field of a document, given its schema from [`document`].
+/// Returns the key, unit and meaning of every field of a document, given its schema from [`document`].
 ///
 /// Fields of list items have `[]` after the key of the list; fields of maps with arbitrary keys
 /// have `.*` in place of the key. An object that contains objects of its own type is listed once.

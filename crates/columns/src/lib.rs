@@ -4,7 +4,7 @@
 //! them in other formats. [`described!`] declares a document: each field once, with its unit and meaning. JSON, JSON
 //! Schema and the data dictionary are generated from this declaration.
 //!
-//! Convention: a number that is not finite is a missing value in a file, and a dash in a text for readers.
+//! Convention: a number that is not finite is a missing value in a file, and a dash in text for human readers.
 
 pub mod column;
 pub mod described;

@@ -48,7 +48,7 @@ pub enum ApplyError {
 }
 
 impl<S: Space> Applied<S> {
-    /// Returns force and moment about the center of mass of the body, given the rotations of all bodies.
+    /// Returns the force and the moment about the center of mass of the body, given the rotations of all bodies.
     #[inline(always)]
     pub(crate) fn wrench(&self, rotations: &[S::Rotation]) -> Wrench<S> {
         let arm = S::rotate(rotations[self.body], self.point);

@@ -136,7 +136,8 @@ pub struct Body<S: Space> {
     pub mass: S::Real,
     /// Moment of inertia about the center of mass (kg·m²).
     pub inertia: S::Inertia,
-    /// Viscous damping matrix (Candia et al. 2008, eq. 2.8), which multiplies the velocity in the inertial frame.
+    /// Viscous damping matrix (Candia et al. 2008, eq. 2.8), which multiplies the velocity in the inertial frame;
+    /// `None` if the body has no viscous damping.
     pub damping: Option<S::Damping>,
     /// Initial pose.
     pub pose: Pose<S>,
@@ -144,7 +145,7 @@ pub struct Body<S: Space> {
     pub twist: Twist<S>,
     /// Target surfaces.
     pub surfaces: Vec<Placed<S>>,
-    /// Contact nodes.
+    /// Sets of contact nodes.
     pub nodes: Vec<Nodes<S>>,
     /// Flat pieces of boundary that carry nodes; see [`Face`].
     pub faces: Vec<Face<S>>,
