@@ -24,11 +24,11 @@ const LOOKAHEAD_SLACK: f64 = 1e-3;
 const LEAST_ALLOWANCE: f64 = 0.015;
 
 /// Time (s) for which the list should remain valid if bodies keep their speeds, so that falling bodies do not require a
-/// new list every second step.
+/// new list at every other step.
 const HORIZON: f64 = 0.012;
 
 /// Maximum allowance (m): no body may move farther before the list is rebuilt. A larger allowance would make the list
-/// longer, and long lists are expensive, too.
+/// longer, and every step more expensive.
 const MOST_ALLOWANCE: f64 = 0.15;
 
 /// The elements of one contact pair.

@@ -66,19 +66,19 @@ pub struct EnergyLedger<S: Space> {
     works: Works<S::Real>,
     /// Poses of the bodies at the last accepted step.
     poses: Vec<Pose<S>>,
-    /// Dissipative forces on the bodies at the last accepted step.
+    /// Dissipative forces on every body at the last accepted step.
     losses: Vec<Losses<S>>,
     viscous: Vec<Wrench<S>>,
-    /// Forces of contacts and elements on the bodies at the last accepted step.
+    /// Total force and moment on every body at the last accepted step; see [`Scratch::wrenches`].
     wrenches: Vec<Wrench<S>>,
     /// Plastic elongation and failure of the force elements at the last accepted step.
     memory: Vec<Memory<S>>,
-    /// External forces at the last accepted step.
+    /// Every external force, with its moment, at the last accepted step; see [`Scratch::applied`].
     pub(crate) applied: Vec<Wrench<S>>,
     /// Spring forces of the force elements at the last accepted step (N).
     springs: Vec<S::Real>,
     stored: Stored<S::Real>,
-    /// Sum, over all steps, of the absolute work of the ground and of external forces.
+    /// Sum, over all steps, of the absolute values of the work of the ground and of the work of external forces.
     flow: S::Real,
     deepest: S::Real,
 }

@@ -135,7 +135,7 @@ impl<S: Space> Element<S> {
         self.link().flaw(bodies).or_else(|| self.flaw())
     }
 
-    /// Returns the load of the unbroken element at a state.
+    /// Returns the load of the element at a state, as if the element had neither yielded nor broken before.
     pub fn load(&self, state: &State<S>) -> Load<S::Real> {
         let rotations: Vec<_> = state.poses.iter().map(|p| S::rotation(p.orientation)).collect();
         self.act(state, &rotations, Memory::default()).load
