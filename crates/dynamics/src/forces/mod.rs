@@ -119,9 +119,9 @@ pub struct Scratch<S: Space> {
     /// Rate of change (m/s) of the displacement of every tangential spring: the slip rate, plus the rate at which the
     /// rotation of the bodies turns the displacement; zero without contact.
     pub slip_rates: Vec<S::Tangent>,
-    /// Number of force evaluations.
+    /// Number of force evaluations so far.
     pub evaluations: u64,
-    /// Number of contact elements tested in all evaluations.
+    /// Number of contact elements tested, summed over the force evaluations so far.
     pub contact_evaluations: u64,
     /// Lanes that need substepping: at the current speeds, the penetration of some contact is predicted to exceed
     /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) within [`Scratch::lookahead`].
@@ -383,7 +383,7 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
     }
 }
 
-/// Accepts the state that `scratch` was evaluated at: limits the displacement of every tangential spring to the
+/// Accepts the state at which `scratch` was evaluated: limits the displacement of every tangential spring to the
 /// friction capacity, resets elements without contact, and breaks force elements that fail.
 pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
     commit_corrected(

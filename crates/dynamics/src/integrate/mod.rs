@@ -15,8 +15,8 @@ use crate::state::State;
 
 /// Ground motion that drives the prescribed bodies.
 pub trait Drive<S: Space> {
-    /// Returns displacement (m) and velocity (m/s) of the ground at a time (s); the velocity is the derivative of the
-    /// displacement.
+    /// Returns the displacement (m) and the velocity (m/s) of the ground at a time (s); the velocity is the derivative
+    /// of the displacement.
     fn at(&self, time: S::Real) -> (S::Vector, S::Vector);
 }
 
@@ -169,7 +169,7 @@ fn free<S: Space>(model: &Model<S>) -> impl Iterator<Item = usize> + '_ {
     model.inert.iter().enumerate().filter(|(_, b)| b.motion == Motion::Free).map(|(i, _)| i)
 }
 
-/// Ends a step: accepts the state that `scratch` was evaluated at.
+/// Ends a step: accepts the state at which `scratch` was evaluated.
 fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
     forces::commit(model, state, scratch);
 }

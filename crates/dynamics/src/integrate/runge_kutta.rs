@@ -42,10 +42,10 @@ pub(super) static BOGACKI_SHAMPINE: Tableau = Tableau {
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_field_names, reason = "the name that is used everywhere else")]
 struct Rates<S: Space> {
-    /// Velocity of every body, and the rate of its rotation vector ([`Space::turn_rate`]). The rotation vector
+    /// Linear velocity of every body, and the rate of its rotation vector ([`Space::turn_rate`]). The rotation vector
     /// describes the rotation from the start of the step to the current stage.
     velocities: Vec<Twist<S>>,
-    /// Acceleration of every body, and the rate of its [`Space::momentum`].
+    /// Linear acceleration of every body, and the rate of its [`Space::momentum`].
     kicks: Vec<Twist<S>>,
     slip_rates: Vec<S::Tangent>,
 }
@@ -55,7 +55,7 @@ struct Rates<S: Space> {
 pub(super) struct Stages<S: Space> {
     rates: Vec<Rates<S>>,
     poses: Vec<Pose<S>>,
-    /// Velocity of every body, and its [`Space::momentum`].
+    /// Linear velocity of every body and, in place of its spin, its [`Space::momentum`].
     momenta: Vec<Twist<S>>,
     sticks: Vec<Stick<S>>,
     /// Rotation vector of every body from the start of the step to the current stage.

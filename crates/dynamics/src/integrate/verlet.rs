@@ -39,12 +39,12 @@ pub(super) fn semi_implicit_euler<S: Space>(
     accept(model, state, scratch, step);
 }
 
-/// Takes a step of velocity Verlet: half a kick, a drift without forces ([`Space::coast`]), and half a kick with the
+/// Takes a step of velocity Verlet: a half-kick, a drift without forces ([`Space::coast`]), and a half-kick with the
 /// forces at the new position.
 ///
 /// Forces that depend on the velocity use a velocity predicted with the old acceleration, which is corrected
 /// afterwards. The displacements of the tangential springs are likewise predicted with the old slip rate and then
-/// corrected. Springs that engage or release within the step act for a part of the step only
+/// corrected. Springs that engage or release within the step act only during part of the step
 /// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)). Prediction errors are of second order and
 /// do not accumulate, since the corrected values are kept.
 pub(super) fn velocity_verlet<S: Space>(
@@ -103,8 +103,8 @@ fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S
     }
 }
 
-/// Ends a step: corrects the displacement of every tangential spring, and accepts the state that `scratch` was
-/// evaluated at. The correction is the change of the slip rate in the step, multiplied by the time `share` (s).
+/// Ends a step: corrects the displacement of every tangential spring, and accepts the state at which `scratch` was
+/// evaluated. The correction is the change of the slip rate in the step, multiplied by the time `share` (s).
 fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
     let (new, old) = (&scratch.slip_rates, &scratch.old_slip_rates);
     commit_corrected(

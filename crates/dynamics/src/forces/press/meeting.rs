@@ -140,8 +140,8 @@ impl<'a, S: Space> Meeting<'a, S> {
         }
     }
 
-    /// Converts the wrench of all contacts on the contactor to the wrenches on contactor and target, in the inertial
-    /// frame.
+    /// Converts the wrench of all contacts on the contactor to the wrenches on the contactor and the target, in the
+    /// inertial frame.
     #[inline(always)]
     pub(super) fn on_bodies(&self, wrench: Wrench<S>) -> (Wrench<S>, Wrench<S>) {
         let rotation = self.frame.rotation;

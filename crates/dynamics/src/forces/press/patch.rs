@@ -50,7 +50,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.sum.normal += spread.slopes.deepest.times(-energy);
     }
 
-    /// Requests substeps in lanes where the forces of spring and damper would change too abruptly in a whole step, and
+    /// Requests substeps in lanes where the spring and damper forces would change too abruptly in a whole step, and
     /// detects hard impacts.
     #[inline(always)]
     fn look_at_speed(&mut self, node: S::Vector, gap: Gap<S>) {
