@@ -109,7 +109,7 @@ pub struct Party<'a> {
     pub model: &'a Model<Spatial>,
     /// For every body, the index of its contact kind in [`Crossing::kinds`].
     pub kinds: &'a [usize],
-    /// Rank of the party: where bodies of two parties touch, the party of lower rank supplies the contact law.
+    /// Rank of the party: where bodies of two parties touch, the party with the lower rank supplies the contact law.
     pub rank: usize,
     /// Placement in the joined model.
     pub frame: Frame,

@@ -74,7 +74,7 @@ pub use solid::Solid;
 pub use space::{Linear, Planar, Pose, Quaternion, Rotation3, Space, Spatial, Twist, Vec2, Vec3};
 pub use state::State;
 
-/// The example of the README, which is compiled and run as a doc test.
+/// The example in the README, which is compiled and run as a doc test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

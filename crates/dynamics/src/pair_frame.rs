@@ -1,4 +1,4 @@
-//! Relative pose of two bodies in the frame of a surface, and a filter that selects their contacts by the position
+//! Relative pose of two bodies in the frame of a surface, and a filter that selects their contacts by their position
 //! relative to a face.
 
 use crate::model::{ContactPair, Counts, Model};

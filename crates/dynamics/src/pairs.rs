@@ -14,7 +14,7 @@ pub(crate) enum Pairs {
     Listed {
         /// The pairs.
         pairs: Vec<ContactPair>,
-        /// For every two bodies with pairs, the range of these pairs; in ascending order of the bodies.
+        /// For every two bodies that have pairs, the indices of these pairs; sorted by the IDs of the bodies.
         couples: Vec<Couple>,
     },
     /// The pairs of two bodies depend only on the kinds of the bodies. So no list of all pairs is stored; its length
@@ -33,20 +33,22 @@ pub(crate) enum Pairs {
     Joined {
         /// The pairs within parties. The pairs between parties have higher indices.
         pairs: Vec<ContactPair>,
-        /// For every two bodies with pairs within a party, the range of these pairs; in ascending order of the bodies.
+        /// For every two bodies of one party that have pairs, the indices of these pairs; sorted by the IDs of the
+        /// bodies.
         couples: Vec<Couple>,
         /// Pairs between parties.
         foreign: Foreign,
     },
 }
 
-/// Pairs between the parties of a joined model.
+/// Contact pairs between bodies of different parties of a [joined](crate::join) model. A party is one of the runs that
+/// are joined.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Foreign {
     /// Party and contact kind of every body.
     pub(crate) bodies: Vec<(usize, usize)>,
-    /// For every party, its rank, and the index of its first interface. The party of the lower rank supplies the
-    /// contact law.
+    /// For every party, its rank, and the index of its first interface. Where bodies of two parties touch, the party
+    /// with the lower rank supplies the contact law.
     pub(crate) parties: Vec<(usize, InterfaceId)>,
     /// Rules for contacts between bodies of different parties.
     pub(crate) crossing: Arc<Crossing>,
@@ -78,11 +80,11 @@ impl Foreign {
     }
 }
 
-/// Callback that receives a representative pair, all bodies that may be its contactor, and all bodies that may be its
-/// target.
+/// Callback for one kind of contact pair: receives one pair of this kind, all bodies that may be the contactor, and all
+/// bodies that may be the target.
 pub type TellMeeting<'a> = dyn FnMut(&ContactPair, &[BodyId], &[BodyId]) + 'a;
 
-/// Two bodies, and the range of their pairs in the list of pairs.
+/// Two bodies, and the indices of their pairs in the list of pairs.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Couple {
     /// The two bodies, the lower ID first.

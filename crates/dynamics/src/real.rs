@@ -96,7 +96,7 @@ pub trait Real:
         // NaN is not less than anything.
         self.abs().lt(Self::splat(f64::INFINITY))
     }
-    /// Replaces the number in one lane.
+    /// Returns a copy in which the number in one lane is replaced by `value`.
     #[must_use]
     fn with_lane(self, lane: usize, value: f64) -> Self {
         Self::from_lanes(|l| if l == lane { value } else { self.lane(l) })

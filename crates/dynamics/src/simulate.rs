@@ -92,11 +92,11 @@ pub enum RunError {
          step below {time_step:.2e} s"
     )]
     NotFinite {
-        /// Time (s).
+        /// Time (s) at the end of the failed step.
         time: f64,
         /// Name of the body whose motion is not finite.
         body: String,
-        /// Time step (s).
+        /// Time step (s) of the run, [`Simulation::time_step`]; a substep is shorter.
         time_step: f64,
         /// Number of steps accepted before the failure.
         steps: u64,
@@ -385,7 +385,7 @@ pub(crate) struct StepTimes<R: Real> {
 const LOOKAHEAD: f64 = 1.25;
 
 impl<R: Real> StepTimes<R> {
-    /// Creates the step times for a model with a time step (s).
+    /// Creates the step times of a run of `model` with the given time step (s).
     pub(crate) fn new<S: Space<Real = R>>(model: &Model<S>, time_step: R) -> Self {
         let Substepping { substeps, fast, .. } = &model.substepping;
         let short = R::splat(if fast.is_some() { 2.0 } else { 1.0 });

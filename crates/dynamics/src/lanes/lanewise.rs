@@ -108,7 +108,7 @@ impl<T: Lanewise, const N: usize> Lanewise for [T; N] {
 pub struct PerLane<T>(Vec<T>);
 
 impl<T: Clone> PerLane<T> {
-    /// Creates the value of a single run.
+    /// Creates a value with one lane, for a single run.
     pub fn single(value: T) -> Self {
         Self(vec![value])
     }

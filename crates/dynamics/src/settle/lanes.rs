@@ -20,7 +20,7 @@ pub struct Stack<'a> {
     pub model: &'a Model<Planar>,
     /// Initial state; at rest on return.
     pub state: &'a mut State<Planar>,
-    /// Working memory; on return, contains the forces at rest, including the contacts.
+    /// Working memory; on return, contains the forces and the contacts of the stack at rest.
     pub scratch: &'a mut Scratch<Planar>,
 }
 
@@ -185,7 +185,7 @@ impl<R: Real> Lanes<R> {
         ended
     }
 
-    /// Takes a settled stack out of its lane.
+    /// Copies the settled state of a lane to its stack, evaluates the forces there and returns the result.
     fn take(&self, lane: usize, stack: &mut Stack<'_>, (steps, unbalanced): (u64, f64)) -> Settled {
         let Stack { model, state, scratch } = stack;
         state.poses = self.state.poses.of_lane(lane);

@@ -10,8 +10,8 @@ use crate::state::State;
 
 use super::gravity;
 
-/// Displacement of a body, as a fraction of its reach, at which the cause is diagnosed: more than any body moves while
-/// it settles, but little enough that the body has not yet disturbed others.
+/// Displacement of a body, as a fraction of its reach, at which the cause of the displacement is diagnosed: more than
+/// any body moves while it settles, but little enough that the body has not yet disturbed others.
 const GOING: f64 = 0.1;
 
 /// Displacement of a body, as a fraction of its reach, beyond which it counts as out of place.
@@ -34,7 +34,7 @@ const TURNS: f64 = 0.7;
 pub struct SettleError {
     /// Name of the lowest body that moves. Bodies above it may move only because they lose their support.
     pub body: String,
-    /// Displacement of the body (m).
+    /// Displacement (m) of the body from its initial position, at the time of the error.
     pub moved: f64,
     /// The cause.
     pub lack: Lack,
@@ -92,7 +92,7 @@ pub enum Lack {
     Time {
         /// Number of steps taken.
         steps: u64,
-        /// The residual acceleration, as a fraction of gravity.
+        /// Largest residual acceleration of any body after these steps, as a fraction of gravity.
         unbalanced: f64,
     },
 }

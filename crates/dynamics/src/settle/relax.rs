@@ -354,8 +354,8 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// For every contact that began in this step, adds the tangential displacement since the contact began to the
-    /// displacement of its tangential spring.
+    /// Updates the tangential spring of every contact that began in this step: adds the tangential displacement from
+    /// the beginning of the contact to the end of the step.
     #[inline(always)]
     fn slide_fresh(&self, model: &Model<S>, sticks: &mut [Stick<S>], scratch: &Scratch<S>) {
         let one = S::Real::splat(1.0);

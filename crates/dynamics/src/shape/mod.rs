@@ -69,9 +69,9 @@ pub struct Facing<S: Space> {
     /// Maximum permitted value of `−n · limit` for each of the two limits, where `n` is the outward normal of a piece
     /// of the other surface. If either value is greater, the point cannot bear on this piece.
     pub most: f64,
-    /// Tolerance (m) for a point outside of a side of the other surface that the range excludes. A point that lies this
-    /// distance or more outside of such a side does not count as inside the core, so [`Surface::bearing`] returns the
-    /// nearest piece.
+    /// Distance (m) by which a point may lie outside of the sides that the range excludes, and still count as inside
+    /// the core of the other surface. At this distance or farther outside, [`Surface::bearing`] returns the nearest
+    /// piece.
     pub slack: f64,
 }
 
@@ -393,7 +393,7 @@ impl Shape {
         }
     }
 
-    /// Returns the boundary as a chain of points (m) for drawing, and `true` if it is closed.
+    /// Returns the boundary as a polyline (m) for drawing, and `true` if it is closed.
     pub fn outline(&self) -> (Vec<Vec2>, bool) {
         match self {
             Self::Circle(shape) => (shape.outline(), true),

@@ -51,7 +51,7 @@ pub enum PolygonError {
     /// There are fewer than three corners.
     #[error("a polygon needs at least 3 corners, found {found}")]
     TooFew {
-        /// Number of corners given.
+        /// The given number of corners.
         found: usize,
     },
     /// A corner turns inward, or three successive corners are in line.
@@ -79,7 +79,7 @@ pub enum PolygonError {
     /// The corner radius is too large for the polygon.
     #[error("a corner radius of {radius} m is too large for the polygon: choose a smaller radius")]
     RadiusTooLarge {
-        /// The radius given (m).
+        /// The given corner radius (m).
         radius: f64,
     },
 }
@@ -303,7 +303,7 @@ impl Polygon {
         )
     }
 
-    /// Returns the boundary as a chain of points; rounded corners are divided into steps of at most 15 degrees.
+    /// Returns the boundary as a closed polyline (m); rounded corners are divided into steps of at most 15 degrees.
     pub(super) fn outline(&self) -> Vec<Vec2> {
         if self.corner_radius == 0.0 {
             return self.sides.iter().map(|side| side.start).collect();

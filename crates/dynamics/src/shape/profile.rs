@@ -234,8 +234,8 @@ impl BarrelProfile {
         )
     }
 
-    /// Returns the outline as a chain of points that starts at the right head and runs over the top, the left head and
-    /// the bottom.
+    /// Returns the outline as a closed polyline (m) that starts at the right head and runs over the top, the left head
+    /// and the bottom.
     fn chain(&self, parts: usize) -> Vec<Vec2> {
         let half = self.half_stave();
         let direction = |angle: f64| {

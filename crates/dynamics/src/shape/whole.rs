@@ -72,7 +72,7 @@ pub struct Patch<S: Space> {
     pub first: usize,
     /// Deepest point of the patch.
     pub deepest: Touch<S>,
-    /// Extent of the patch; `None` for a point.
+    /// Extent of the patch; `None` for a point contact.
     pub spread: Option<Spread<S>>,
 }
 

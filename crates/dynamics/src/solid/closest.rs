@@ -33,8 +33,8 @@ const MOST_ALONG: u32 = 180;
 /// this position; the number of evaluations; and `true` if the gap is the minimum.
 type Along = (f64, Gap<Spatial>, u32, bool);
 
-/// Tolerance within which the slope of a gap along a segment counts as zero, as a fraction of the terms that add up to
-/// the slope.
+/// Tolerance within which the slope `n · half` of a gap along a segment counts as zero, as a fraction of the length of
+/// `half`.
 const FLAT: f64 = 1e-14;
 /// Maximum number of steps of Halley's method along a segment before the slower search takes over.
 const MOST_HALLEY: u32 = 6;
@@ -221,7 +221,7 @@ impl Set<'_> {
         point - self.rotation.apply(gap.normal) * depth
     }
 
-    /// Returns the support of a unit direction, with the curvature of the surface there.
+    /// Returns the support point in a unit direction, with the curvature of the surface there.
     ///
     /// The support function is `h = R |n| − a β` on the stave and `h = l |α| + r β` on the chime. Here α and β are the
     /// components of the direction `n` along and across the axis, `l` is half the length of the core, `r` the radius of
@@ -244,8 +244,8 @@ impl Set<'_> {
         Support { point, along, across, around, outward }
     }
 
-    /// Returns the support in the axial direction of a head. All points of the head are equally far in this direction;
-    /// the point of the rim that is nearest to `toward` (m) is used.
+    /// Returns the support point in the axial direction of a head. All points of the head are equally far in this
+    /// direction; the point of the rim that is nearest to `toward` (m) is used.
     fn on_rim(&self, direction: Vec3, toward: Vec3) -> Support {
         let (barrel, toward) = (self.barrel, self.rotation.unapply(toward - self.center));
         let radial = Vec3::new(0.0, toward.y, toward.z).unit_or(Vec3::new(0.0, 0.0, 1.0));

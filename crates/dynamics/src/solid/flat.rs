@@ -18,7 +18,7 @@ pub(super) struct Flat {
     /// Weights of the deepest point and of the other parts of the patch, as in [`Spread`](crate::shape::Spread).
     pub(super) shares: Shares<f64>,
     pub(super) radius: f64,
-    /// Unit vectors along the patch; a line has only the first.
+    /// Unit vectors along the patch; for a line, only the first is used.
     pub(super) axes: [Vec3; 2],
 }
 
