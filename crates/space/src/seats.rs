@@ -34,7 +34,7 @@ pub struct Seats {
     /// Joints between every barrel and its rack, between every rack and its supports, and between other bodies that
     /// have touched. For the horizontal force, the magnitude is recorded.
     pub joints: Joints,
-    /// Forces (N) on the upper bodies of the joints in the current step.
+    /// For each joint, the force (N) on its upper body in the current step.
     forces: Vec<Vec3>,
     /// Forces on the contact elements of all pairs, pair after pair.
     presses: Vec<Press>,
@@ -77,7 +77,7 @@ impl Seats {
         seats
     }
 
-    /// Records the forces in one lane after an accepted step, at a time (s). `stands` is `true` if no body had left its
+    /// Records the forces in one lane at `time` (s), after an accepted step. `stands` is `true` if no body had left its
     /// seat before this step.
     pub fn observe<R: Real>(
         &mut self,

@@ -84,13 +84,15 @@ pub(crate) struct Watch {
     frames: Frames,
     /// Time (s) between two frames.
     every: f64,
-    /// Duration (s) of the run after a collapse.
+    /// Time (s) for which the run continues after a collapse.
     after_collapse: f64,
     pub(crate) ending: Option<Ending>,
 }
 
-/// Maximum number of steps between two calls of the observer. The number of steps is limited in addition to the
-/// simulated time, because a step with many bodies takes a long time.
+/// Maximum number of steps between two calls to the observer.
+///
+/// The simulated time between two calls is limited as well. That limit alone would not be enough, because a step with
+/// many bodies takes a long time.
 const PATIENCE: u32 = 16;
 
 impl Prepared {

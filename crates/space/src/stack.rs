@@ -52,7 +52,7 @@ impl Stack {
         self.levels == 0
     }
 
-    /// Returns the bodies of a kind, in order.
+    /// Returns the IDs of all bodies of a kind, in ascending order.
     pub fn of_kind(&self, kind: PartKind) -> impl Iterator<Item = BodyId> + '_ {
         self.parts.iter().enumerate().filter(move |(_, part)| part.kind == kind).map(|(i, _)| i)
     }
@@ -141,7 +141,7 @@ const FAST: Fast<f64> = Fast { whole_step_way: 5e-4, hard: 1.0 };
 struct Pace {
     /// The time step (s).
     step: f64,
-    /// Number of substeps during impacts.
+    /// Number of substeps of a time step during impacts.
     substeps: f64,
     /// For each contact law, by name: the largest penetration (m) at which time steps of full length are short enough.
     depths: BTreeMap<String, f64>,

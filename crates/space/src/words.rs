@@ -123,7 +123,7 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
 /// bodies.
 const MOST_LISTED: usize = 10;
 
-/// Demands that the console output shows; the page shows all demands.
+/// Demands that the console output shows; the report page shows all demands.
 const SHOWN: [&str; 5] = [
     "top_drift_ratio",
     "stress_amplification",

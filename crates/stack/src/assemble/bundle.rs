@@ -47,7 +47,8 @@ impl Bundle {
         Self { count, cosine: 1.0 }
     }
 
-    /// Returns the seats that a contact of a pair represents; `law` is the contact law as stated in the scenario.
+    /// Returns the seats that one contact between the two kinds of bodies of `pair` represents. `law` is the contact
+    /// law as stated in the scenario.
     pub(super) fn at(pair: StackPair, law: &Interface, spec: &StackSpec, shown: Shown) -> Self {
         let Shown::Plane(view) = shown else { return Self::ONE };
         let rack = &spec.rack;
@@ -100,9 +101,8 @@ impl Bundle {
 
     /// Returns the friction law of the bundle.
     ///
-    /// The normal forces of seats that form a wedge add up to the load on the wedge divided by the cosine. The friction
-    /// coefficient is therefore divided by the cosine. The tangential stiffness and damping are the sums over all
-    /// seats.
+    /// The normal forces of seats that form a wedge add up to the load on the wedge divided by `cosine`. The friction
+    /// coefficient is therefore divided by `cosine`. The tangential stiffness and damping are the sums over all seats.
     pub(super) fn friction(self, friction: Friction) -> Friction {
         if self.cosine == 1.0 {
             return friction;

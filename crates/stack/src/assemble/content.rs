@@ -15,7 +15,8 @@ use crate::device::Words;
 use crate::scenario::{StackBody, View};
 use crate::slosh::Wave;
 
-/// Description of the elements that hold the wine. These elements never break and appear in no report.
+/// Description of the force elements that attach a sloshing mass to its barrel. These elements never break and appear
+/// in no report.
 static WORDS: Words = Words::silent("wine");
 
 /// Damping ratio of the sloshing mode. The value is an assumption: viscosity alone gives less damping in a smooth

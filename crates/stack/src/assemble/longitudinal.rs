@@ -223,7 +223,7 @@ fn corner_of(rack: &Rack) -> f64 {
     TUBE_CORNER.min(0.25 * rack.rail_width)
 }
 
-/// Position of a barrel relative to its two rails, which may be inclined.
+/// Position of a barrel, which may be inclined, relative to its two rails.
 struct Seating {
     /// Height (m) of the center of the barrel above the mean height of the tops of its rails.
     seat: f64,

@@ -117,7 +117,7 @@ impl Part {
         }
     }
 
-    /// Creates the part of the ground, drawn as a line that is longer than the width of any picture.
+    /// Creates the description of the ground, which is drawn as a line longer than the width of any picture.
     fn ground() -> Self {
         let points = vec![Vec2::new(-100.0, 0.0), Vec2::new(100.0, 0.0)];
         let outlines = vec![Outline { points, closed: false }];
@@ -134,7 +134,7 @@ pub struct Assembly {
     pub parts: Vec<Part>,
     /// Force elements of devices that are installed once the stack has settled.
     pub(crate) loose: Vec<Loose>,
-    /// Time step (s) that the contacts require; during impacts, the step is divided further.
+    /// Time step (s) that the contacts require; during impacts, it is divided into substeps.
     pub step: f64,
     /// For each force element of the model, the description of its device.
     pub devices: Vec<&'static Words>,
@@ -154,7 +154,7 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// Returns the bodies of a kind, in order.
+    /// Returns the IDs of all bodies of a kind, in ascending order.
     pub fn of_kind(&self, kind: PartKind) -> impl Iterator<Item = BodyId> + '_ {
         self.parts.iter().enumerate().filter(move |(_, p)| p.kind == kind).map(|(i, _)| i)
     }
