@@ -35,7 +35,7 @@ pub(crate) enum Seat {
     OnSupport(usize),
     /// The rack stands on this solid. The solid rests on the ground, or on any body in the list of the rack's supports.
     OnSupports,
-    /// The solid carries the barrel of the rack with this index.
+    /// The solid carries one barrel of the rack. The value is the index of the barrel among the barrels of the rack.
     Barrel(usize),
     /// In the plane along the barrels: the solid carries the barrel with this index, and stands on the ground or on the
     /// support below that barrel.

@@ -176,7 +176,7 @@ pub struct Cost {
     pub dollars: [f64; 2],
     /// Whether the bounds are per stack or per level.
     pub each: Each,
-    /// Source of the figures.
+    /// Source of the bounds.
     pub source: &'static str,
 }
 

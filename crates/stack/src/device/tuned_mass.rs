@@ -53,8 +53,8 @@ pub struct Tuning {
 impl Tuning {
     /// Returns the tuning that minimizes the largest displacement of an undamped structure under a harmonic force.
     ///
-    /// `share` is the mass ratio μ. The frequency is `1/(1 + μ)` and the damping ratio `√(3μ/8(1 + μ))` (Den Hartog
-    /// 1956, section 3.3). A rocking stack is not such a structure: its period grows with the amplitude.
+    /// `share` is the mass ratio μ. The frequency ratio is `1/(1 + μ)`, and the damping ratio is `√(3μ/(8(1 + μ)))`
+    /// (Den Hartog 1956, section 3.3). A rocking stack is not such a structure: its period grows with the amplitude.
     ///
     /// ```
     /// let tuning = barrelstack_stack::device::Tuning::den_hartog(0.05);
@@ -106,8 +106,8 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<TunedMass, InputEr
     Ok(mass)
 }
 
-/// Natural frequency (Hz) of the support of a mass. It is far above the natural frequency of any stack, but the support
-/// is not stiffer than a seat.
+/// Natural frequency (Hz) of a mass on its stiff support. It is far above the natural frequency of any stack, but the
+/// support is not stiffer than a seat.
 const HOLDING: f64 = 15.0;
 
 impl TunedMass {

@@ -80,7 +80,7 @@ struct Batch<'a, 'b, R: Real> {
     joints: Option<Joints<R>>,
     /// Stop criteria of each lane; `None` before the first run is loaded.
     end: Option<watch::End<R>>,
-    /// Barrel positions in each lane.
+    /// For each lane, the sampled barrel positions of its case.
     trails: Vec<Trail>,
     /// For each lane, the time (s) at which its next sample is due; infinity in lanes without a case.
     due: R,
