@@ -45,7 +45,7 @@ pub struct Boundaries {
     bodies: Vec<Vec<(Outline, Depth)>>,
 }
 
-/// Position of a part perpendicular to the plane of the model.
+/// Position of a part in the direction perpendicular to the plane of the model.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Depth {
     /// The part is a barrel.
@@ -168,7 +168,8 @@ impl Outline {
     }
 }
 
-/// Outline of a part at a pose, its bounding box as in [`Outline::at`], and its position perpendicular to the plane.
+/// Outline of a part at a pose, its bounding box as in [`Outline::at`], and its position in the direction perpendicular
+/// to the plane.
 type Solid = (Outline, [f64; 4], Depth);
 
 /// Returns the deepest overlap (m) of the parts of two bodies; zero if they do not overlap.

@@ -69,7 +69,7 @@ impl CaseColumn {
     }
 }
 
-/// Returns a table of cases with the columns of [`CASE_COLUMNS`]: one row per case, in order.
+/// Returns a table of cases with the columns of [`CASE_COLUMNS`]: one row per case, in the order of `cases`.
 ///
 /// ```
 /// use barrelstack_stack::ensemble::{Ensemble, Prepared, table};
@@ -108,7 +108,7 @@ pub fn variants<'a>(cases: impl Iterator<Item = &'a CaseResult> + Clone) -> Vec<
 /// Name and description of the first column of [`variants`].
 const VARIANT: (&str, &str) = ("variant", "number of the variant; 0 is the stack as stated");
 
-/// Returns the description of a column of cases; `None` if there is no such column.
+/// Returns the description of the column `name` of a table of cases or variants; `None` if there is no such column.
 pub fn meaning(name: &str) -> Option<&'static str> {
     let known = CASE_COLUMNS.iter().map(|column| (column.name, column.meaning));
     known.chain([VARIANT]).find_map(|(known, meaning)| (known == name).then_some(meaning))

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Resolution of the counters of progress: a case simulated to its maximum duration counts as this many units.
+/// Resolution of the progress counters: a case simulated to its maximum duration counts as this many units.
 const PARTS: f64 = 1e6;
 
 static DONE: AtomicU64 = AtomicU64::new(0);
@@ -49,7 +49,7 @@ impl Work {
         }
     }
 
-    /// Returns the progress made since `earlier`, the result of an earlier call of [`Work::now`].
+    /// Returns the progress made since `earlier`, the result of an earlier call to [`Work::now`].
     #[must_use]
     pub fn since(self, earlier: Self) -> Self {
         Self {
