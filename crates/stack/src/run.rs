@@ -47,7 +47,7 @@ pub struct Run {
     pub outcome: Outcome,
     /// Losses of seats, falls and largest motions of all bodies.
     pub fates: Fates,
-    /// Largest forces and failures of all force elements, in the order of the model.
+    /// Largest forces and failure of each force element, in the order of the elements in the model.
     pub elements: Vec<ElementFate>,
     /// Normal contact stress along the boundary of every barrel and rack: at rest, and the largest values until the
     /// first loss of seat and over the whole run.
@@ -92,7 +92,7 @@ pub struct Progress {
     pub end_time: f64,
 }
 
-/// Longest remainder (s) of the ground motion at the end of a run that does not count as cut short.
+/// Part of the ground motion (s) that may be left at the end of a run. If more is left, the run counts as cut short.
 pub const CUT: f64 = 0.01;
 
 /// Maximum number of steps of a run; about 10⁵ steps of a stack are computed in a second.
@@ -203,8 +203,8 @@ impl Scenario {
 }
 
 impl Run {
-    /// Returns the duration (s) of the ground motion that was left when `run.duration` ended the run. Returns `None` if
-    /// at most [`CUT`] was left, or if the run ended for another reason.
+    /// Returns how much of the ground motion (s) was left when `run.duration` ended the run. Returns `None` if at most
+    /// [`CUT`] was left, or if the run ended for another reason.
     pub fn cut(&self) -> Option<f64> {
         cut(self.ending, self.ground.end(), self.end_time)
     }

@@ -73,7 +73,8 @@ impl Simulation {
     /// Builds the stack of a scenario, settles it, and prepares its run on a given ground.
     ///
     /// # Errors
-    /// If the stack cannot be built or does not stand, or the run would be too long or need too much memory.
+    /// If the stack cannot be built or does not come to rest under its own weight, or if the run would be too long or
+    /// need too much memory.
     pub fn new(scenario: &Scenario, ground: Ground) -> Result<Self, RunFailure> {
         let time_scale = scenario.run.similitude.sqrt();
         let end_time = end_time(scenario, ground.motion_end(), time_scale)?;
@@ -255,7 +256,7 @@ impl Simulation {
         &self.state
     }
 
-    /// Returns the forces, contacts and loads in the current state.
+    /// Returns the data computed from the current state, such as contact forces and the loads of force elements.
     pub fn scratch(&self) -> &Scratch<Planar> {
         &self.scratch
     }

@@ -83,7 +83,8 @@ impl<'a> Stack<'a> {
 /// Builds the stack of a scenario and settles it, for a run that ends at `end_time` (s) at the latest.
 ///
 /// # Errors
-/// If the stack cannot be built, or does not stand.
+/// If the stack cannot be built or does not come to rest under its own weight, or if the time step or the run would be
+/// too long.
 pub fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure> {
     let mut one = [Stack::built(scenario, end_time)];
     // Settling is never stopped here.

@@ -28,8 +28,8 @@ const REFERENCE: f64 = 0.01;
 /// Halving the step changes the time of every fall by at most 0.3 ms (`tests/paper.rs`).
 pub const IMPACT_SHARE: f64 = 0.4;
 
-/// Penetration up to which steps are not divided during impacts, as a fraction of `REFERENCE`; the penetration of
-/// resting contacts is smaller.
+/// Penetration above which steps are divided during impacts, as a fraction of `REFERENCE`; the penetration of resting
+/// contacts is smaller.
 ///
 /// With this value, the energy residual of the demo scenario in the view along the barrels is 1.1e-5; with a value four
 /// times as large, it is 2.4e-4.
@@ -38,9 +38,9 @@ pub const WHOLE_STEP: f64 = 0.05;
 /// Largest time step as a fraction of the critical time step at the penetration [`WHOLE_STEP`], including tangential
 /// springs.
 ///
-/// Impacts require accuracy, but bodies at rest require stability only. For resting contacts, steps are therefore
-/// divided only above twice the penetration [`WHOLE_STEP`]. At that penetration, the step is 0.83 of the critical step,
-/// since the stiffness grows with the square root of the penetration.
+/// Impacts require accuracy, but contacts at rest require stability only. For contacts at rest, the penetration above
+/// which steps are divided is therefore twice as large as for impacts. At that penetration, the step is 0.83 of the
+/// critical step, since the stiffness grows with the square root of the penetration.
 pub const WHOLE_STEP_SHARE: f64 = 0.7;
 
 /// Assumed load on the lightest body through its impact contacts, divided by the weight of the heaviest body.

@@ -19,7 +19,7 @@ const BOOKS_BROKEN: f64 = 0.1;
 /// warning.
 const BOOKS_OPEN: f64 = 1e-3;
 
-/// Totals of a run that reached its end.
+/// Totals of a run without numerical breakdown.
 pub struct Ended {
     /// Energy balance at the end.
     pub energy: EnergySummary,
@@ -105,8 +105,8 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     })
 }
 
-/// Returns the duration (s) of the ground motion that was left when `run.duration` ended a run. Returns `None` if at
-/// most [`CUT`] was left, or if the run ended for another reason.
+/// Returns how much of the ground motion (s) was left when `run.duration` ended a run. Returns `None` if at most
+/// [`CUT`] was left, or if the run ended for another reason.
 pub fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
     let left = motion_end - time;
     (ending == Ending::Duration && left > CUT).then_some(left)

@@ -86,7 +86,7 @@ const STIFFNESS: Kind = Kind::Quantity(&[Dimension::STIFFNESS], Range::NOT_NEGAT
 const DAMPING: Kind = Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE);
 const AT_START: Default = Default::Derived("the initial distance between the attachment points");
 
-/// Reads the elements between bodies.
+/// Reads the force elements of a free scene.
 pub(super) fn read(
     root: &Reader<'_>,
     ground: &Ground,

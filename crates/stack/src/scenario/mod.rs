@@ -187,8 +187,8 @@ impl Scenario {
 
     /// Returns the place at which one of the given fields was written; `None` if none of them was written.
     ///
-    /// Overrides take precedence over the file itself, and the file over the files that it extends; otherwise, earlier
-    /// fields take precedence.
+    /// Overrides take precedence over the file itself, and the file over the files that it extends. Among fields of
+    /// equal precedence, the first one in `fields` applies.
     pub fn place_of(&self, fields: &[String]) -> Option<Place> {
         let (sources, table) = self.written.0.as_deref()?;
         let origin =
@@ -243,7 +243,8 @@ impl Scenario {
         writer::to_toml(&root::write(self))
     }
 
-    /// Returns the scenario without title and motion as a table under a key, for another file such as a study.
+    /// Returns the scenario, without title and motion, as the TOML text of a table with the given key, for another file
+    /// such as a study.
     ///
     /// In the table, `until` replaces all settings that end a run, because the settings of the scenario were chosen for
     /// its own motion.

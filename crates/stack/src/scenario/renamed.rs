@@ -1,6 +1,6 @@
 //! Former keys of scenarios.
 //!
-//! Uncertain constants were once stated among the imperfections. Their former keys are still read, with a warning that
+//! Uncertain constants were formerly set in `[imperfections]`. Their former keys are still read, with a warning that
 //! names the current key.
 
 use super::error::{Problem, ScenarioError};
@@ -31,11 +31,11 @@ const KINDS: [(&str, [bool; 2]); 3] =
 
 /// Replaces former keys by current keys, and returns a warning for each former key.
 ///
-/// If a former key and the current key are stated in different layers, the key in the upper layer applies: overrides
-/// take precedence over the file, and the file over the files that it extends.
+/// If a former key and the current key are set in different layers, the key in the upper layer applies: overrides take
+/// precedence over the file, and the file over the files that it extends.
 ///
 /// # Errors
-/// If one file states a former key together with the current one, or gives `kind` an unknown value.
+/// If one file contains a former key together with the current one, or gives `kind` an unknown value.
 pub(super) fn renew(table: &mut Table, sources: &Sources) -> Result<Vec<String>, ScenarioError> {
     let Some(Entry { node: Node { value: Value::Table(former), .. }, .. }) = table.get_mut(FORMER)
     else {
@@ -88,10 +88,10 @@ fn kinds(entry: &Entry, sources: &Sources) -> Result<[bool; 2], ScenarioError> {
     })
 }
 
-/// Adds an entry to a table of the scenario, unless a layer above that of the entry states the same key.
+/// Adds an entry to a table of the scenario, unless a layer above that of the entry sets the same key.
 ///
 /// # Errors
-/// If the layer of the entry itself states the same key.
+/// If the layer of the entry itself sets the same key.
 fn put(
     table: &mut Table,
     section: &str,

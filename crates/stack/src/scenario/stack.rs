@@ -96,12 +96,12 @@ impl StackSpec {
         plane
     }
 
-    /// Returns the stack in the transverse plane only, if both planes are requested.
+    /// Returns the stack in the transverse plane only; `None` unless both planes are requested.
     pub fn across(&self) -> Option<Self> {
         self.columns_along.map(|_| Self { columns_along: None, ..self.clone() })
     }
 
-    /// Returns the stack in the longitudinal plane only, if both planes are requested.
+    /// Returns the stack in the longitudinal plane only; `None` unless both planes are requested.
     ///
     /// Overrides of single columns are dropped, because columns are numbered across the barrels.
     pub fn along(&self) -> Option<Self> {

@@ -300,7 +300,7 @@ impl Template {
         Ok(Scenario { written: Written(None, self.warnings.clone()), ..scenario })
     }
 
-    /// Returns the value at a path of a scenario, including defaults; `None` if there is no value at this path.
+    /// Returns the value at a path in a scenario, including defaults; `None` if there is no value at this path.
     pub fn value_in(scenario: &Scenario, path: &str) -> Option<Value> {
         let mut table = root::write(scenario);
         let mut keys = path.split('.').map(str::trim).peekable();

@@ -14,7 +14,7 @@ pub struct ElementFate {
     pub broken_at: Option<f64>,
 }
 
-/// Largest forces and failures of all force elements, in the order of the model.
+/// Largest forces and failure of each force element, in the order of the elements in the model.
 #[derive(Clone, Debug, Default)]
 pub struct ElementFates(pub Vec<ElementFate>);
 

@@ -51,6 +51,8 @@ pub enum Loss {
 }
 
 /// Outcome of a run for one body: loss of seat, fall, and largest motions.
+///
+/// The collapse is the first loss of seat of any body of the stack.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fate {
     /// Time (s) and kind of the loss of seat; `None` if the body kept its seat.
@@ -67,21 +69,21 @@ pub struct Fate {
     pub fall_force: Option<f64>,
     /// Largest drop (m) below its position at rest.
     pub drop: f64,
-    /// Largest displacement (m) along `x` relative to the ground, before the collapse.
+    /// Largest displacement (m) along `x` relative to the ground, until the collapse.
     pub peak_displacement: f64,
     /// Displacement (m) along `x` relative to the ground, at the end of the run.
     pub residual_displacement: f64,
     /// Displacement (m) along `x` relative to the ground at the collapse, or at the end of the run if there was no
     /// collapse.
     pub displacement_at_collapse: f64,
-    /// Largest displacement (m) relative to the support, before the collapse: of a rack on the barrels below, or of a
+    /// Largest displacement (m) relative to the support, until the collapse: of a rack on the barrels below, or of a
     /// barrel in its cradle.
     pub peak_slip: f64,
     /// Displacement (m) relative to the support, at the end of the run.
     pub residual_slip: f64,
-    /// Largest tilt (rad) of a rack, before the collapse.
+    /// Largest tilt (rad) of a rack, until the collapse; zero for other bodies.
     pub peak_tilt: f64,
-    /// Largest rise (m) of a body above its position at rest, before the collapse.
+    /// Largest rise (m) of the body above its position at rest, until the collapse.
     pub peak_uplift: f64,
     /// Largest motions over the whole run.
     pub whole_run: PeakMotion,
@@ -94,7 +96,7 @@ pub struct PeakMotion<R: Real = f64> {
     pub displacement: R,
     /// Largest displacement (m) relative to the support.
     pub slip: R,
-    /// Largest tilt (rad) of a rack.
+    /// Largest tilt (rad) of a rack; zero for other bodies.
     pub tilt: R,
 }
 

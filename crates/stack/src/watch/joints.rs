@@ -44,7 +44,7 @@ pub struct Joints<R: Real = f64> {
     pub joints: Vec<Joint<R>>,
     /// For every body, the joints in which it is the upper body: the lower body and the index of each joint.
     of_upper: Vec<Vec<(BodyId, usize)>>,
-    /// `true` if bodies that touch, but do not support each other by design, are also observed.
+    /// `true` to also observe bodies that touch although neither supports the other by design.
     follows_all: bool,
 }
 
@@ -85,8 +85,8 @@ impl<R: Real> Lanewise for Joints<R> {
 }
 
 impl Joint {
-    /// Returns the name of the joint, such as "R1 on ground", or "R1.1 against R1.2" for bodies that do not support
-    /// each other by design.
+    /// Returns the name of the joint, such as "R1 on ground", or "R1.1 against R1.2" if neither body supports the other
+    /// by design.
     pub fn name(&self, assembly: &Assembly) -> String {
         self.named(|body| &assembly.parts[body].name)
     }
@@ -125,8 +125,8 @@ pub struct ForceBetween<S: Space> {
 }
 
 impl<S: Space> ForceBetween<S> {
-    /// Returns the forces between all bodies that touch, in the order of the bodies; bodies that support each other by
-    /// design come first. `supports` returns the bodies that support a body by design ([`leans_on`]).
+    /// Returns the forces between all bodies that touch, in the order of the bodies; pairs in which one body supports
+    /// the other by design come first. `supports` returns the bodies that support a body by design ([`leans_on`]).
     pub fn all(pairs: &[PairForce<S>], supports: impl Fn(BodyId) -> Vec<BodyId>) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();
         for pair in pairs {
@@ -156,8 +156,8 @@ impl<S: Space> ForceBetween<S> {
     }
 }
 
-/// Returns two bodies that do not support each other by design, in the order in which results name them: the ground
-/// comes last, and of two other bodies, the body with the lower index comes first.
+/// Returns two bodies, neither of which supports the other by design, in the order in which results name them: the
+/// ground comes last, and of two other bodies, the body with the lower index comes first.
 fn named_first(one: BodyId, other: BodyId) -> (BodyId, BodyId) {
     let (first, second) = (one.min(other), one.max(other));
     if first == Assembly::GROUND { (second, first) } else { (first, second) }
@@ -213,8 +213,8 @@ impl Joints {
         }
     }
 
-    /// Returns the joints of bodies that support each other by design, followed by the joints of other bodies that have
-    /// touched. Both groups are in the order of the bodies.
+    /// Returns the joints in which one body supports the other by design, followed by the joints of other bodies that
+    /// have touched. Both groups are in the order of the bodies.
     pub fn listed(&self) -> Vec<&Joint> {
         let mut listed: Vec<&Joint> =
             self.joints.iter().filter(|joint| joint.by_design || joint.has_met()).collect();
@@ -287,7 +287,8 @@ fn raise<R: Real>(
 }
 
 impl<R: Real> Joints<R> {
-    /// Returns the index of the joint of two bodies, and `true` if the first body is the upper one.
+    /// Returns the index of the joint of two bodies, and `true` if the first body is the upper one; `None` if the
+    /// bodies have no joint.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn number(&self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
@@ -300,7 +301,7 @@ impl<R: Real> Joints<R> {
 
     /// Returns the index of the joint of two bodies that touch, and `true` if the first body is the upper one.
     ///
-    /// Adds the joint if it does not exist yet. If bodies that do not support each other by design are not observed,
+    /// Adds the joint if it does not exist yet. If only bodies are observed of which one supports the other by design,
     /// returns `None` instead.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
@@ -313,7 +314,7 @@ impl<R: Real> Joints<R> {
         Some((self.add(first, second), first == one))
     }
 
-    /// Adds a joint of two bodies that do not support each other by design.
+    /// Adds a joint of two bodies, neither of which supports the other by design.
     fn add(&mut self, upper: BodyId, lower: BodyId) -> usize {
         let at = self.joints.len();
         self.of_upper[upper].push((lower, at));

@@ -45,7 +45,8 @@ impl Frames {
     }
 }
 
-/// History of the force between two bodies of a stack that support or have touched each other.
+/// History of the force between two bodies of a stack, one of which supports the other by design, or which have
+/// touched.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointForces {
     /// The bodies, with the force at rest and the largest forces in any step.
@@ -74,7 +75,7 @@ pub struct Recording {
     pub times: Vec<f64>,
     /// Histories of the ground motion, the displacements and the energies.
     pub channels: Vec<Channel>,
-    /// Forces between bodies, beginning with bodies that support each other by design.
+    /// Forces between bodies, beginning with the pairs in which one body supports the other by design.
     pub joints: Vec<JointForces>,
     frame_rate: f64,
     history_rate: f64,
@@ -149,7 +150,8 @@ impl Recording {
         self.channels.iter().find(|channel| channel.name == name)
     }
 
-    /// Returns the displacement (m) of a body along `x`, relative to the ground and to its position at rest.
+    /// Returns the history of the displacement (m) along `x` of the body with the given name, relative to the ground
+    /// and to its position at rest. Returns `None` if there is no such body.
     pub fn displacement(&self, body: &str) -> Option<&Channel> {
         self.channel(&format!("{body} displacement x"))
     }

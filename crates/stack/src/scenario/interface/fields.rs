@@ -176,11 +176,11 @@ const LAWS: Variants = Variants {
     ],
 };
 
-/// Fields that exclude each other, because the damping is stated either directly or by a restitution.
+/// Fields that exclude each other, because the damping is specified either directly or by a coefficient of restitution.
 const EXCLUSIVE: &[&[&str]] =
     &[&["damping", "restitution"], &["damping", "reference_mass"], &["damping", "reference_speed"]];
 
-/// The contact law of one pair in a stack.
+/// Definition of the table of the contact law of one pair of bodies in a stack.
 pub static INTERFACE: Section = Section {
     name: "interface",
     help: "The contact law of one pair of bodies.",
@@ -189,7 +189,8 @@ pub static INTERFACE: Section = Section {
     exclusive: EXCLUSIVE,
 };
 
-/// The contact law of one pair of bodies that touch in impacts only: fallen bodies, or neighbors.
+/// Definition of the table of the contact law of one pair of bodies that touch in impacts only: fallen bodies, or
+/// neighbors.
 pub static IMPACT: Section = Section {
     name: "impact",
     help: "The contact law of one pair of bodies that touch in impacts only.",
@@ -198,7 +199,7 @@ pub static IMPACT: Section = Section {
     exclusive: EXCLUSIVE,
 };
 
-/// The contact law between two kinds of bodies or boundaries of a free scene.
+/// Definition of the table of the contact law between two kinds of bodies or boundaries of a free scene.
 pub static FREE_INTERFACE: Section = Section {
     name: "free-interface",
     help: "The contact law between two kinds of bodies.",

@@ -22,7 +22,7 @@ named! {
     }
 }
 
-/// Dissipation of a normal law, stated as a damping coefficient or as a coefficient of restitution.
+/// Dissipation of a normal law, specified by a damping coefficient or by a coefficient of restitution.
 ///
 /// In either case, the restitution of an impact depends on the mass or the speed of the body that strikes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,9 +112,9 @@ pub enum Friction {
 pub struct Interface {
     /// Basis of the stiffness and damping: per node, per length of boundary or per seat.
     pub basis: Basis,
-    /// Normal force.
+    /// Law of the normal force.
     pub normal: NormalLaw,
-    /// Tangential force.
+    /// Law of the tangential force.
     pub friction: Friction,
 }
 
@@ -126,7 +126,7 @@ type DampingRatio = fn(f64) -> Option<f64>;
 type Restitution = fn(f64) -> f64;
 
 impl Interface {
-    /// Returns `true` if the damping is stated by a restitution.
+    /// Returns `true` if the damping is specified by a coefficient of restitution.
     pub fn states_restitution(&self) -> bool {
         match self.normal {
             NormalLaw::SpeedGap { damping, .. }
@@ -151,8 +151,8 @@ impl Interface {
 
     /// Multiplies the damping of a linear law by a factor. Other laws are left unchanged.
     ///
-    /// If the damping is stated by a restitution, the restitution is changed so that the damping ratio is multiplied by
-    /// the factor.
+    /// If the damping is specified by a coefficient of restitution, that coefficient is changed so that the damping
+    /// ratio is multiplied by the factor.
     pub fn damp(&mut self, factor: f64) {
         let (damping, to_ratio, from_ratio): (_, DampingRatio, Restitution) = match &mut self.normal
         {
