@@ -15,7 +15,7 @@ pub enum CalibrateError {
     /// The first simulation of the fit fails.
     #[error(transparent)]
     Run(#[from] RunFailure),
-    /// The calibration was canceled; the simulations completed so far give no estimate.
+    /// The calibration was canceled. The simulations completed by then are discarded.
     #[error("the simulations were stopped")]
     Stopped,
 }

@@ -16,16 +16,16 @@ pub struct Impact {
 /// Number of integration steps per radian of the undamped oscillation, during the approach.
 const STEPS: f64 = 100.0;
 
-/// Speed, divided by the product of depth and natural frequency, below which the mass counts as at rest.
+/// Speed, divided by the product of penetration and natural frequency, below which the mass counts as at rest.
 const CREEP: f64 = 1e-9;
 
-/// Computes the impact of a mass, under gravity, on a contact that follows the speed-gap law.
+/// Computes the impact of a mass, under gravity, on a contact that follows the law [`NormalLaw::SpeedGap`].
 ///
 /// `mass` is in kg, `stiffness` in N/m, `damping` in N·s/m, `gravity` in m/s² and the impact speed `speed` in m/s.
 ///
 /// The damper acts only during the approach, which is integrated by the classical Runge–Kutta method up to
 /// the maximum penetration `x`. The rebound is elastic, so the mass leaves with the speed `√(ω² x² − 2 g x)`,
-/// unless the root is imaginary.
+/// where `ω` is the natural frequency `√(k/m)`. If `ω² x²` is at most `2 g x`, the mass does not rebound.
 ///
 /// ```
 /// use barrelstack_calibration::impact;

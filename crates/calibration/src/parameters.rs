@@ -12,7 +12,7 @@ use barrelstack_dynamics::math;
 use super::CalibrateError;
 use super::result::{quoted, rounded};
 
-/// A parameter that a response or a collapse can determine.
+/// A parameter that can be estimated from a recorded response or from observed collapses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// Stiffness of barrel–rack contacts. The stiffness of rack–ground contacts changes in proportion.
@@ -58,8 +58,8 @@ struct Constants {
 
 /// Parameters to be estimated, and the contact constants of the scenario.
 ///
-/// A point of the search holds one number per parameter: the logarithm of the ratio of the parameter to its
-/// value in the scenario.
+/// A point in the parameter space has one coordinate per parameter: the logarithm of the ratio of the parameter to
+/// its value in the scenario.
 pub(super) struct Tunable {
     parameters: Vec<Parameter>,
     barrel_rack: Constants,

@@ -18,12 +18,12 @@ use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 /// single nodes coming into contact average out.
 const WIDTH: f64 = 0.01;
 
-/// Maximum length of the last step of a fit, relative to the standard error. A step of this length adds 0.3 % to the
+/// Length of a step, relative to the standard error, below which a fit ends. A step of this length adds 0.3 % to the
 /// width of an interval.
 const SHARE: f64 = 0.05;
 
-/// Maximum length of the last step of the first fit, relative to the standard error. This fit only estimates
-/// the scatter of the channels.
+/// Length of a step, relative to the standard error, below which the first fit ends. This fit only estimates the
+/// scatter of the channels.
 const FIRST_SHARE: f64 = 0.2;
 
 /// Residuals of a channel are attributed to rounding errors if their root mean square, divided by that of the recorded

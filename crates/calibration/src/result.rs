@@ -20,7 +20,8 @@ pub struct Estimate {
     pub dimension: Dimension,
 }
 
-/// Share of stacks or barrels that fall according to the model, for one statement on what fell in an earthquake.
+/// Model prediction for one statement about an earthquake: the share of stacks that fall, or of barrels that lie on
+/// the floor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelShare {
     /// Name of the statement.

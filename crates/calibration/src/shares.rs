@@ -36,7 +36,7 @@ const COVERS: &str = "The 95 % intervals cover the uncertainty of the statements
 /// Number of parameter sets that are weighted by the likelihood of the statements.
 const DRAWS: usize = 20_000;
 
-/// Mean likelihood of a statement below which a warning is given; 1 is the highest possible likelihood.
+/// Mean likelihood of a statement over the prior below which a warning is given; 1 is the highest possible likelihood.
 const UNLIKELY: f64 = 0.05;
 
 /// Scenario that represents all stacks with a given number of levels. Its motion is that of the earthquake.
@@ -59,7 +59,7 @@ struct Shaken {
     point: Vec<f64>,
     /// Logarithm of the factor by which the motion is multiplied, in standard deviations.
     motion: f64,
-    /// Index of the height.
+    /// Index of the [`Height`] of the stack.
     height: usize,
     /// Share of the barrels that fell; `None` if the stack stands.
     fallen: Option<f64>,
@@ -71,7 +71,7 @@ struct Fit {
     /// For each height, the mean share of the barrels that fall if a stack falls; if no stack of this height fell, the
     /// mean over all heights.
     fallen: Vec<f64>,
-    /// Numbers of levels, standardized to mean 0 and variance 1; empty if there is only one height.
+    /// For each height, its number of levels, standardized to mean 0 and variance 1; empty if there is only one height.
     heights: Vec<f64>,
 }
 
@@ -85,9 +85,9 @@ struct Fit {
 /// 2. A probit regression of second degree is fitted to the results. It gives the share of stacks that fall as a
 ///    function of the parameters, the factor and the height.
 /// 3. Another 20 000 parameter sets are drawn from the prior ranges and weighted by the likelihood of the statements.
-///    Each set has one factor of the motion for all statements, and one sample of the regression. For each statement,
-///    the proportions of stacks of each height are drawn at random; all mixtures are equally probable. The likelihood
-///    includes a model error ([`MODEL_ERROR`]).
+///    For each set, one factor of the motion and one sample of the regression coefficients are drawn and used for all
+///    statements. For each statement, the proportions of stacks of each height are drawn at random; all mixtures are
+///    equally probable. The likelihood includes a model error ([`MODEL_ERROR`]).
 ///
 /// The intervals of the parameters contain the central 95 % of the weight.
 ///
@@ -328,7 +328,7 @@ struct Weighed {
     posterior: Posterior,
     /// For each statement, the shares that the model predicts, one for each parameter set.
     shares: Vec<Vec<f64>>,
-    /// Mean likelihood of each statement over all parameter sets; at most 1.
+    /// Mean likelihood of each statement over all parameter sets, without their weights; at most 1.
     likelihoods: Vec<f64>,
 }
 

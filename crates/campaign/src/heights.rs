@@ -114,8 +114,8 @@ pub struct AtLevel {
     pub interval: Interval,
     /// Mean share of the barrels that fall.
     pub fallen: f64,
-    /// Range that contains, with a probability of 95 %, the share of collapses, given the uncertain constants of the
-    /// seats and the sampling error. `None` if a run has no verdict, or if there are too few runs.
+    /// 95 % interval of the probability of collapse. It accounts for the uncertain constants of the seats and for the
+    /// sampling error. `None` if a run has no verdict, or if there are too few runs.
     pub range: Option<[f64; 2]>,
 }
 
@@ -158,7 +158,7 @@ pub struct AsRecorded {
     pub levels: u32,
     /// Direction of the shaking.
     pub direction: Direction,
-    /// Name of the horizontal component of the bundled record.
+    /// Name of the motion, which consists of one horizontal component of the bundled record and the vertical component.
     pub motion: String,
     /// `true` if the stack collapsed.
     pub collapsed: bool,
@@ -212,10 +212,10 @@ impl Heights {
 /// Reason why a study of safe heights fails.
 #[derive(Debug, thiserror::Error)]
 pub enum HeightsError {
-    /// The rack is not in the catalog.
+    /// The rack is not in the catalog. The strings are its name and a list of the known racks.
     #[error("there is no rack `{0}`; use one of {1}")]
     Rack(String, String),
-    /// The barrel is not in the catalog.
+    /// The barrel is not in the catalog. The strings are its name and a list of the known barrels.
     #[error("there is no barrel `{0}`; use one of {1}")]
     Barrel(String, String),
     /// The highest stack has too few levels, or too many.

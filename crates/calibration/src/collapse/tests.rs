@@ -35,7 +35,7 @@ fn noted(course: &Course, until: f64, errors: &Errors, random: &mut Random) -> O
     }
 }
 
-/// Every campaign draws its true values from the range, builds three stacks with random placements, records
+/// Every campaign draws its true parameters from the prior, builds three stacks with random placements, records
 /// the outcomes of these stacks, and estimates the parameters from one table of simulations that all
 /// campaigns share.
 #[test]

@@ -63,8 +63,7 @@ impl Measured {
     }
 }
 
-/// Simulates a scenario with changed contact constants. A point holds the logarithms of the factors by which
-/// the constants are multiplied.
+/// Simulates a scenario with contact constants that a point of the parameter space determines ([`Tunable`]).
 pub(super) struct Simulator<'a> {
     scenario: Scenario,
     measured: &'a Measured,

@@ -16,7 +16,7 @@ pub const MODEL_ERROR: f64 = 0.10;
 /// Largest permitted value of [`Earthquake::motion`]; one standard deviation is then a factor of 7 up or down.
 const MOST_MOTION: f64 = 2.0;
 
-/// Reason why a file of statements, or the choice of some of its statements, cannot be used.
+/// Reason why a file of statements, or a selection from it, cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct StatementsError(String);
@@ -35,7 +35,7 @@ pub struct Statements {
 pub struct Earthquake {
     /// Name and year.
     pub name: String,
-    /// Date, magnitude, records and their peaks.
+    /// Date, magnitude, available records and their peak accelerations and velocities.
     #[serde(default)]
     pub about: String,
     /// Where the cellars lie relative to the station that recorded the motion.
@@ -43,7 +43,8 @@ pub struct Earthquake {
     pub place: String,
     /// Standard deviation of ln r, where r is the motion in a cellar divided by the motion at the station.
     pub motion: f64,
-    /// Names of the studies of `validation/field.md` that simulate the earthquake; empty if there is no record.
+    /// Names of the studies of `validation/field.md` that simulate the earthquake; empty if no record of the motion
+    /// is available.
     #[serde(default)]
     pub studies: Vec<String>,
     /// Statements on the stacks in this earthquake.
@@ -95,9 +96,9 @@ pub enum Kind {
     Barrels,
     /// Share of the stacks that fell.
     Stacks,
-    /// The share of the stacks that fell is at least about a value.
+    /// Approximate lower bound of the share of the stacks that fell.
     Most,
-    /// The share of the stacks that fell is at most about a value.
+    /// Approximate upper bound of the share of the stacks that fell.
     Few,
     /// At least one of a number of stacks fell.
     Some,
@@ -278,7 +279,7 @@ impl Statements {
         self.earthquake.iter().flat_map(|one| &one.observation)
     }
 
-    /// Returns a statement and its earthquake by the name of the statement.
+    /// Returns the statement with the name `id` and its earthquake; `None` if there is no such statement.
     pub fn find(&self, id: &str) -> Option<(&Earthquake, &Statement)> {
         let all = self.earthquake.iter();
         let mut pairs = all.flat_map(|quake| quake.observation.iter().map(move |one| (quake, one)));
@@ -287,7 +288,7 @@ impl Statements {
 }
 
 impl Statement {
-    /// Returns what is missing or wrong in the statement.
+    /// Returns a sentence on what is missing or wrong in the statement; `None` if it is valid.
     fn fault(&self) -> Option<&'static str> {
         let ordered = |value: f64| {
             let low = self.low.unwrap_or(value);

@@ -162,7 +162,8 @@ pub struct Cases {
     pub modes: Vec<String>,
     /// Intensity measures of the cases.
     pub measures: Vec<Measure>,
-    /// Index of the measure of the study in `measures`.
+    /// Index in `measures` of the intensity measure of the study: that of the levels to which motions are scaled, or
+    /// `pgv` if they are not scaled to levels.
     pub main: usize,
     /// `true` if every motion was scaled to a requested level of the study's intensity measure. The share of cases that
     /// collapse can then be computed at each level.
@@ -498,7 +499,7 @@ const MOST_BINS: usize = 16;
 /// Minimum mean number of cases per level. With fewer cases, neighboring levels are counted together in bins.
 const FEWEST_OF_LEVEL: usize = 8;
 
-/// Formats a value of a factor.
+/// Formats a value of a factor; `None` gives an empty string.
 pub(super) fn format_value(value: Option<Value>) -> String {
     value.map_or_else(String::new, |value| word(&value))
 }

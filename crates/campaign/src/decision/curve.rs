@@ -218,8 +218,8 @@ fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> 
         .collect()
 }
 
-/// Counts the hunts of an incremental dynamic analysis at eight levels. At each level, a hunt is counted only if it
-/// shows whether the stack fails at this level.
+/// Counts cases and failures of an incremental dynamic analysis at up to eight intensities. A case is a hunt; it counts
+/// at an intensity only if it shows whether the stack fails there.
 fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     let bounds: Vec<(f64, f64)> = evidence.iter().map(|item| item.capacity.bounds()).collect();
     let ends = || bounds.iter().flat_map(|(low, high)| [*low, *high]);

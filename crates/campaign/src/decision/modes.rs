@@ -5,7 +5,7 @@ use barrelstack_fragility::{Interval, Shares, Stripe, wilson};
 use super::cases::{Cases, JudgedCase};
 use super::curve::{LEVEL, LimitCurve, stripe};
 
-/// Incidence of one collapse mode against the measure of the study.
+/// Incidence of one collapse mode as a function of the intensity measure of the study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeIncidence {
     /// Name of the mode.

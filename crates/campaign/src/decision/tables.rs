@@ -68,8 +68,8 @@ pub(super) fn indices(all: &[Sensitivity]) -> Table {
     )
 }
 
-/// Formats the interval of an index, rounded outward so that its printed width is never zero, or states that there are
-/// too few blocks for an interval.
+/// Formats the interval of a Sobol' index, rounded outward so that its printed width is never zero, or states that
+/// there are too few blocks for an interval.
 fn known(interval: Interval) -> String {
     let (low, high) =
         ((100.0 * interval.low).floor() / 100.0, (100.0 * interval.high).ceil() / 100.0);

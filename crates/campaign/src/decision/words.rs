@@ -325,7 +325,7 @@ pub(super) fn warnings(
     said
 }
 
-/// Warns of intensities above which collapse becomes less likely.
+/// Returns a warning for each significant decrease of the fraction of failures as the intensity grows.
 fn islands(cases: &Cases, curve: &LimitCurve) -> Vec<String> {
     let measure = &cases.measures[curve.measure];
     let falls = curve.monotony.significant(0.05);

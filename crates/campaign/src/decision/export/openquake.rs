@@ -96,8 +96,8 @@ pub(super) fn fragility(
     text
 }
 
-/// Returns the share of a stack's wine that is lost in burst barrels, under the central assumption about breakage; 0 if
-/// the stack holds no wine.
+/// Returns the share of a stack's wine that is lost from burst barrels, under the central assumption about breakage; 0
+/// if the stack holds no wine.
 fn wine_lost(case: &JudgedCase) -> f64 {
     let lost = |(fall, wine): (&f64, &f64)| wine * Breakage::RANGE[1].probability(*fall);
     // The sum starts from 0, since an empty sum of floats is -0.
@@ -155,8 +155,8 @@ impl Ratios {
         Self { means, shares }
     }
 
-    /// Returns the values at an intensity, interpolated linearly in the logarithm of the intensity between
-    /// the levels of the study.
+    /// Returns the mean and the coefficient of variation of the loss ratio at an intensity. Between the levels of the
+    /// study, `means` and `shares` are interpolated linearly in the logarithm of the intensity.
     fn at(&self, x: f64) -> Level {
         let mean = interpolate(&self.means, x);
         // Below the lowest level the share is constant; only the mean tends to zero.
