@@ -96,7 +96,7 @@ pub(super) struct PlannedCase {
     pub(super) motion: usize,
     /// Intensity (SI) to which the motion is scaled, if any.
     pub(super) level: Option<f64>,
-    /// Value of each factor in the case; `None` to keep the value of the base scenario.
+    /// Values of the factors in the case; `None` for a factor that keeps the value of the base scenario.
     pub(super) settings: Vec<Option<Setting>>,
 }
 
