@@ -136,9 +136,9 @@ pub struct Ranked {
     /// collapse), given the uncertain constants of the seats and the sampling error. `None` if it is unknown, or if the
     /// protection was not run in all rounds.
     pub range: Option<[f64; 2]>,
-    /// Number of barrels that fall, for every draw of the uncertain constants and the regression coefficients. Draws
-    /// with the same index have the same constants for all protections. Empty if `range` is `None` or if there are no
-    /// uncertain constants.
+    /// Numbers of barrels that fall, one for each draw of the uncertain constants and the regression coefficients.
+    /// Draws with the same index have the same constants for all protections. Empty if `range` is `None` or if there
+    /// are no uncertain constants.
     pub draws: Vec<f64>,
     /// Share of the draws of the uncertain constants in which fewer barrels fall than with the unprotected stack; a
     /// draw with equal numbers counts as one half. `None` for the unprotected stack, or if `draws` is empty for either
@@ -174,7 +174,7 @@ pub struct Ranking {
 }
 
 impl Ranking {
-    /// Returns the results of the unprotected stack.
+    /// Returns the results of the unprotected stack; `None` if [`Ranking::all`] does not contain them.
     pub fn as_it_is(&self) -> Option<&Ranked> {
         self.all.iter().find(|one| one.protection.kind == Kind::AsItIs)
     }
@@ -436,7 +436,8 @@ fn ranked(candidate: &Candidate, base: &Candidate, weights: &[f64], tries: usize
     }
 }
 
-/// Adds the effect of the uncertain constants to the protections that were run in all rounds.
+/// Computes the effect of the uncertain constants on the protections that were run in all rounds, and stores it in
+/// [`Ranked::range`] and [`Ranked::draws`].
 fn over_constants(
     all: &mut [Ranked],
     candidates: &[Candidate],
@@ -457,7 +458,8 @@ fn over_constants(
     }
 }
 
-/// Adds the shares of draws in which a protection is better than the unprotected stack, and than the next protection.
+/// Computes, for every protection, the shares of draws in which it is better than the unprotected stack and than the
+/// next protection.
 fn compare_draws(all: &mut [Ranked]) {
     let better = |one: &Ranked, other: &Ranked| {
         let known = !one.draws.is_empty() && one.draws.len() == other.draws.len();

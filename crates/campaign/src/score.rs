@@ -35,7 +35,8 @@ pub use protocol::{Protocol, State};
 /// Peak ground velocity (m/s) at which one stack in ten collapses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Capacity {
-    /// The velocity is that of the fitted curve, with its 95 % interval if the records determine an interval.
+    /// The velocity is that of the fitted curve, with its 95 % interval; `None` if the jackknife over the records fails
+    /// ([`LimitCurve::left_out`]).
     Fitted(f64, Option<Interval>),
     /// The share of collapses rises above one in ten between these two levels. The lower level determines the score.
     ///
@@ -121,12 +122,12 @@ pub struct Scored {
     pub fallen_at_rest: usize,
     /// `true` if the study draws no uncertain constant.
     certain: bool,
-    /// Velocity (m/s) at which one stack in ten collapses, for every draw of the uncertain constants and the regression
-    /// coefficients. Draws with the same index have the same constants in all elements of [`Sheet::rows`]. Empty if no
-    /// constant is drawn, if a run has no verdict, or if there are too few runs.
+    /// Velocities (m/s) at which one stack in ten collapses, one for each draw of the uncertain constants and the
+    /// regression coefficients. Draws with the same index have the same constants in all elements of [`Sheet::rows`].
+    /// Empty if no constant is drawn, if a run has no verdict, or if there are too few runs.
     pub draws: Vec<f64>,
     /// Effect of the uncertain constants on the share of collapses at the velocity of the score; `None` if it is
-    /// unknown.
+    /// unknown, or if the capacity of another row is lower.
     pub effect: Option<Fitted>,
 }
 
@@ -170,7 +171,7 @@ pub struct Sheet {
     pub stated_levels: u32,
     /// Protocol of the score.
     pub protocol: Protocol,
-    /// Result of every state in every direction.
+    /// Results, one for each state and direction.
     pub rows: Vec<Scored>,
     /// Report page.
     pub document: Document,
@@ -376,7 +377,7 @@ impl Prepared {
     }
 }
 
-/// Adds the effect of the uncertain constants to the rows of a score.
+/// Returns the rows of a score, completed with the effect of the uncertain constants.
 fn over_constants(rows: Vec<(Scored, Sample)>, protocol: &Protocol) -> Vec<Scored> {
     let ends = [protocol.velocities[0], *protocol.velocities.last().unwrap_or(&0.0)];
     let fits = pool::map(&rows, |(_, sample)| sample.fit(Shape::Lognormal), &|_| ());

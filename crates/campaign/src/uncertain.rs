@@ -130,7 +130,7 @@ impl Sample {
         self.incomplete = true;
     }
 
-    /// Returns the intensity of every run.
+    /// Returns the intensities of all runs.
     pub(crate) fn intensities(&self) -> impl Iterator<Item = f64> {
         self.runs.iter().map(|run| run.intensity)
     }
@@ -174,8 +174,8 @@ impl Sample {
     /// Returns, for each element of `stripes`, the 95 % range of the share of collapses at its intensity as the
     /// constants vary, and the effect of each constant on this share.
     ///
-    /// Without uncertain constants, the range is the confidence interval that `sampled` returns. An element of the
-    /// result is `None` if the runs cannot be fitted at its intensity.
+    /// Without uncertain constants, the range is the confidence interval of the share, which `sampled` returns. An
+    /// element of the result is `None` if the runs cannot be fitted at its intensity.
     pub(crate) fn at_levels(
         &self,
         stripes: &[Stripe],

@@ -55,8 +55,8 @@ pub(super) struct Over {
     /// Range that contains, with a probability of 95 %, the probability of collapse or the annual rate of collapse;
     /// `None` if unknown.
     pub(super) range: Option<[f64; 2]>,
-    /// Number of barrels that fall, for every draw of the uncertain constants and the regression coefficients; empty if
-    /// unknown.
+    /// Numbers of barrels that fall, one for each draw of the uncertain constants and the regression coefficients;
+    /// empty if unknown.
     pub(super) fallen: Vec<f64>,
 }
 
@@ -65,7 +65,7 @@ pub(super) struct Over {
 pub struct Estimate {
     /// Mean over all motions. For each motion, the results at the levels of shaking are weighted and added.
     pub mean: f64,
-    /// Lower end of the 95 % interval, which treats the runs under one motion as a cluster.
+    /// Lower end of the 95 % interval. Runs under the same motion are not assumed to be independent.
     pub low: f64,
     /// Upper end of the 95 % interval.
     pub high: f64,
@@ -108,12 +108,14 @@ impl Runs {
         }
     }
 
-    /// Returns the effect of the uncertain constants. The results at the levels (m/s) are weighted and added.
+    /// Returns the effect of the uncertain constants on collapse and on the number of fallen barrels. The results at
+    /// the levels (m/s) are weighted and added.
     ///
-    /// For each draw of the constants, the regression gives the share of collapses at each level. This share is
-    /// multiplied by the number of barrels that fall in a collapse, which is assumed not to depend on the constants. It
-    /// is the mean over all collapses at that level or, if no stack collapses there, over the collapses at all levels.
-    /// If no stack collapses at any level, it is `most`, the largest possible number.
+    /// For each draw of the constants, the regression gives the share of collapses at each level. To obtain the number
+    /// of fallen barrels, this share is multiplied by the mean number of barrels that fall in a collapse at that level.
+    /// If no stack collapses at that level, the mean over the collapses at all levels is used instead; if no stack
+    /// collapses at any level, `most`, the largest possible number. The number of barrels per collapse is assumed not
+    /// to depend on the constants.
     pub(super) fn over_constants(&self, levels: &[f64], weights: &[f64], most: f64) -> Over {
         let certain =
             self.sample.is_certain().then(|| self.estimate(|run| run.collapsed, weights, 1.0));
@@ -146,8 +148,8 @@ impl Runs {
         Over { range: Some([low, high]), fallen }
     }
 
-    /// Returns a quantity for each motion: its means over the runs at each level are weighted and added. Motions that
-    /// lack a run at some level are left out.
+    /// Averages a quantity over the runs at each level, and returns the weighted sum of these averages for each motion.
+    /// Motions that lack a run at some level are left out.
     fn by_motion(&self, quantity: Quantity, weights: &[f64]) -> BTreeMap<&str, f64> {
         let weighted = |levels: &Vec<Vec<Outcome>>| {
             let mean = |runs: &Vec<Outcome>| {
@@ -233,11 +235,11 @@ pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
 
 /// Returns the indices of the candidates that continue in the next round.
 ///
-/// Candidates that are significantly worse than a cheaper candidate are dropped. Of the others, the half with the
-/// smaller means continues, but at least four candidates do. The first candidate, the unprotected stack, always
-/// continues. Each candidate is given by its runs and the midpoint of its cost range; `most` is the largest
-/// possible number of fallen barrels in one run. The tests of significance hold for all pairs of candidates
-/// simultaneously.
+/// Candidates that are significantly worse than another candidate that costs at most as much are dropped. At most half
+/// of all candidates continue, or four if that is more: those with the smallest mean numbers of fallen barrels. The
+/// first candidate, the unprotected stack, always continues and is not counted. Each candidate is given by its runs and
+/// the midpoint of its cost range; `most` is the largest possible number of fallen barrels in one run. The tests of
+/// significance hold for all pairs of candidates simultaneously.
 pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Vec<usize> {
     const LEAST: usize = 4;
     let mean = |at: usize| all[at].0.estimate(FALLEN, weights, 1.0).mean;
@@ -256,8 +258,8 @@ pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Ve
     left
 }
 
-/// Returns the indices of the points on the Pareto front, the cheapest first. A point is a cost and a mean,
-/// both of which should be small.
+/// Returns the indices of the points on the Pareto front, the cheapest first. A point is a cost and the mean number of
+/// fallen barrels; smaller is better for both.
 pub(super) fn front(all: &[(f64, f64)]) -> Vec<usize> {
     let better = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;
     let mut front: Vec<usize> =

@@ -21,7 +21,7 @@ use crate::system;
 /// A protection that is tried, with its stacks and runs.
 pub(super) struct Candidate {
     pub(super) protection: Protection,
-    /// Scenario of the protected stack in each direction.
+    /// For each direction, the scenario of the protected stack.
     pub(super) stacks: Vec<(Direction, Scenario)>,
     pub(super) runs: Vec<Runs>,
     pub(super) round: u32,

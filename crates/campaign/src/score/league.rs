@@ -126,8 +126,8 @@ pub fn league(
     Ok(league)
 }
 
-/// Returns the first line of an error and of its cause. Further lines state locations in a generated text, which are of
-/// no use to the reader.
+/// Returns the first lines of the messages of an error and of its cause. Further lines give locations in a generated
+/// text, which are of no use to the reader.
 fn reason(error: &ScoreError) -> String {
     let line = |text: String| text.lines().next().unwrap_or_default().to_owned();
     let cause =

@@ -96,7 +96,7 @@ pub(super) struct PlannedCase {
     pub(super) motion: usize,
     /// Intensity (SI) to which the motion is scaled, if any.
     pub(super) level: Option<f64>,
-    /// Value of each factor in the case; `None` to keep the value of the base scenario.
+    /// Values of the factors in the case; `None` for a factor that keeps the value of the base scenario.
     pub(super) settings: Vec<Option<Setting>>,
 }
 
@@ -193,8 +193,8 @@ impl Cases {
         }
     }
 
-    /// Returns the number of cases. For an incremental dynamic analysis this is the number of hunts, and for
-    /// Monte Carlo the maximum number of cases.
+    /// Returns the number of cases. For Monte Carlo, this is the maximum number of cases. For an incremental dynamic
+    /// analysis, it is the number of hunts: one for each combination of a motion and factor values.
     pub(super) fn count(&self, study: &Study) -> u64 {
         let motions = study.motions.len() as u64;
         let levels = study.crossed_levels().len() as u64;
@@ -409,7 +409,8 @@ impl Study {
         seed_of(self.seed, &words.join("|"))
     }
 
-    /// Returns the value of a factor in a case, in the form in which it is written to the table.
+    /// Returns the value of a factor in a case, in the form in which it is written to the table; `None` if neither the
+    /// case nor the base scenario states a value.
     pub(super) fn factor_value(&self, case: &PlannedCase, factor: usize) -> Option<Value> {
         match &case.settings[factor] {
             Some(setting) => Some(setting.value.clone()),

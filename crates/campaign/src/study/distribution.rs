@@ -195,8 +195,8 @@ impl Cut {
         (self.below[0] + u * (self.below[1] - self.below[0])).clamp(1e-300, 1.0 - 1e-16)
     }
 
-    /// Converts a deviate of the untruncated distribution to the cumulative probability of the same value in the
-    /// truncated distribution.
+    /// Converts the standard normal deviate of a value in the untruncated distribution to the cumulative probability of
+    /// that value in the truncated distribution.
     fn cut(&self, deviate: f64) -> f64 {
         let [from, to] = self.below;
         ((normal(deviate) - from) / (to - from)).clamp(1e-16, 1.0 - 1e-16)

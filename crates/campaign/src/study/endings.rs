@@ -27,13 +27,13 @@ pub struct Endings {
     pub followed: u64,
     /// Number of cases that were stopped at a fixed time after their collapse, as the study specifies.
     pub stopped: u64,
-    /// Number of cases that ended because the duration of the run was over.
+    /// Number of cases that ended because the specified duration had elapsed (`run.duration`).
     pub short: u64,
     /// Number of the cases in `short` in which the ground still moved at the end.
     pub cut: u64,
     /// Number of the cases in `cut` in which the stack still stood at the end.
     pub open: u64,
-    /// Longest part (s) of a motion that was not run, over the cases in `cut`.
+    /// Duration (s) of the part of the motion that was not simulated: the maximum over the cases in `cut`.
     pub longest_cut: f64,
     /// Number of cases in which something still moved at the time limit of the study.
     pub moving: u64,

@@ -101,8 +101,8 @@ pub(super) fn read(
     Ok(motions)
 }
 
-/// Reads the motion that results from the entries `each`, `sine`, `pulse` and `scale` of a `[[motion]]` table and from
-/// the additional `entries`.
+/// Reads the motion that is specified by the entries `each`, `sine`, `pulse` and `scale` of a `[[motion]]` table and by
+/// `entries`, such as the record and its component.
 fn motion_of(
     set: &Reader<'_>,
     opened: &Opened,

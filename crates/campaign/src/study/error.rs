@@ -27,7 +27,7 @@ pub enum StudyError {
         doing: &'static str,
         /// Path of the file or folder.
         path: PathBuf,
-        /// Error message of the operating system.
+        /// Error message from the operating system.
         reason: String,
     },
     /// The folder does not belong to this study.
@@ -53,7 +53,7 @@ pub enum StudyError {
     /// There is no built-in study with this name.
     #[error("{0}")]
     BuiltIn(String),
-    /// A table is inconsistent.
+    /// The columns or rows of a table are invalid, or the table cannot be converted to or from Parquet.
     #[error("{0}")]
     Table(String),
     /// The study has no chunk with this number.

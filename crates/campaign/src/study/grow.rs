@@ -28,7 +28,7 @@ described! {
 pub(super) struct Keys {
     /// Fingerprint of the inputs that all cases share.
     common: String,
-    /// Fingerprint of each motion.
+    /// Fingerprints of the motions, in the order of the motions in the study.
     motions: Vec<u64>,
 }
 

@@ -22,7 +22,7 @@ pub struct Hunt {
     pub runs: u32,
 }
 
-/// A level that was run, and whether the stack collapsed; `None` if the run has no verdict.
+/// Level of a run, and whether the stack collapsed in it (`None` if the run has no verdict).
 pub(super) type LevelResult = (f64, Option<bool>);
 
 impl Hunt {

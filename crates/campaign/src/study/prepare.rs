@@ -23,7 +23,6 @@ const BATCH: usize = 128;
 
 /// Resources for running a chunk.
 pub(super) struct Resources<'a> {
-    /// Cache of motions.
     pub(super) cache: &'a MotionCache,
     /// SIMD vector width with which the cases are run.
     pub(super) lanes: Width,

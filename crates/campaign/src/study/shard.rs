@@ -27,7 +27,7 @@ pub(super) fn holds_lists(spec: &ColumnSpec) -> bool {
     spec.kind == ValueKind::Text && !spec.unit.is_empty()
 }
 
-/// Number of rows in a row group, all of which are held in memory while a table is written.
+/// Number of rows in a row group. While a table is written, the rows of one group are held in memory.
 const GROUP: usize = 1 << 15;
 
 /// Writer that receives a table in parts.
@@ -119,7 +119,7 @@ fn schema(specs: &[ColumnSpec]) -> Result<TypePtr, ParquetError> {
     Ok(Arc::new(Type::group_type_builder("case").with_fields(fields).build()?))
 }
 
-/// Returns the type of a list of numbers, which may be empty or missing.
+/// Returns the Parquet type of a column of lists of numbers; a list may be empty or missing.
 fn list_of_numbers(name: &str) -> Result<Type, ParquetError> {
     let element = Type::primitive_type_builder("element", Physical::DOUBLE)
         .with_repetition(Repetition::REQUIRED)

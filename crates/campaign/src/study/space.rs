@@ -71,7 +71,8 @@ fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<F
     }
 }
 
-/// Returns the values of a case for the columns that only three-dimensional cases have.
+/// Returns the values of a case for the columns that only three-dimensional cases have, in the order of
+/// [`columns::specs`].
 pub(super) fn values(finished: &FinishedCase) -> impl Iterator<Item = Option<Value>> {
     columns::values(finished.headings.as_ref().map(|(first, debris)| (*first, debris.as_slice())))
 }

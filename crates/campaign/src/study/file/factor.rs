@@ -178,7 +178,8 @@ fn domain_of(
     })
 }
 
-/// Returns the first value that a range or a distribution states. This value determines the dimension of the factor.
+/// Returns the first value that a range or a distribution states; `None` if it states none. This value determines the
+/// dimension of the factor.
 fn first_of(section: &Reader<'_>) -> Result<Option<Node>, ScenarioError> {
     match ["from", "mean", "median", "values"].into_iter().find(|key| section.has(key)) {
         Some("values") => Ok(section.nodes("values")?.and_then(|nodes| nodes.first().cloned())),
