@@ -204,7 +204,7 @@ pub fn share_of(ensemble: Option<&Spread>, outcome: &Outcome) -> f64 {
 }
 
 impl Side {
-    /// Creates one side of a comparison from a single run in a plane, without variants and without another plane.
+    /// Creates one side of a comparison from a single planar run, without results of variants or of a second plane.
     pub fn of_run(name: String, run: &Run, summary: Summary) -> Self {
         let assembly = &run.assembly;
         let recorded = |values: Vec<f64>| [run.recording.times.clone(), values];

@@ -14,7 +14,7 @@ pub struct RigidBlock {
     /// Angle (rad) at rest between the vertical and the line that joins the center of mass and the edge about which the
     /// block rocks; the block overturns if it tilts by more than this angle.
     pub slenderness: f64,
-    /// Frequency parameter `p` (1/s): `p² = m g R / I`, with `I` about the edge.
+    /// Frequency parameter `p` (1/s): `p² = m g R / I`, where `I` is the moment of inertia about the edge.
     pub frequency: f64,
 }
 

@@ -47,10 +47,11 @@ pub fn workbook(tables: &[(&str, &str)]) -> Result<Vec<u8>, XlsxError> {
     book.save_to_buffer()
 }
 
-/// Returns the provenance as a CSV table of names and values: the rows of `facts`, then the members of the documents.
+/// Returns the provenance as a CSV table of names and values: the rows of `facts`, then the members of `documents`.
 ///
-/// Each document is the content of a JSON file. If it has a member `provenance`, only this member is listed. The member
-/// `columns` is left out, since the tables state their columns.
+/// Each document is the content of a JSON file. If it has a member `provenance`, only the members of `provenance` are
+/// listed. Nested members are listed under their paths, such as `a.b`. A member `columns` is left out, because the
+/// tables state their columns.
 pub fn provenance(facts: &[(String, String)], documents: &[&str]) -> String {
     let mut rows = facts.to_vec();
     for text in documents {
@@ -145,7 +146,10 @@ impl Iterator for Rows<'_> {
     }
 }
 
-/// Returns `true` if a string is a number, and not an identifier that consists of digits.
+/// Returns `true` if a string is a finite number, and does not look like an identifier.
+///
+/// A string looks like an identifier if its integer part has a leading zero or more than [`DIGITS`] digits, or if it
+/// has an exponent after an integer part of several digits.
 fn is_number(text: &str) -> bool {
     let digits = text.strip_prefix('-').unwrap_or(text);
     let whole = digits.split(['.', 'e']).next().unwrap_or_default();

@@ -259,7 +259,7 @@ described! {
 }
 
 impl Unfinished {
-    /// Returns a caveat about incomplete results.
+    /// Returns a warning that the runs were stopped, and that the share of collapses is therefore unknown.
     pub fn warning(&self) -> String {
         let Self { done, of } = self;
         format!(
@@ -308,8 +308,11 @@ fn outcome(run: &Run) -> OutcomeSummary {
 }
 
 impl OutcomeSummary {
-    /// Summarizes an outcome, given the time (s) of the first fall of a barrel, the number of fallen barrels and the
-    /// number of all barrels.
+    /// Summarizes an outcome.
+    ///
+    /// `first_fall` is the time (s) of the first fall of a barrel, `None` if no barrel falls. `fallen` is the number of
+    /// fallen barrels, and `barrels` the number of all barrels. The summary of an invalid or interrupted run omits the
+    /// time of the first fall and the number of fallen barrels.
     pub fn of(outcome: &Outcome, first_fall: Option<f64>, [fallen, barrels]: [usize; 2]) -> Self {
         // For an interrupted run, falls are reported per body but not in the outcome.
         let ended = !matches!(outcome, Outcome::Invalid { .. } | Outcome::Interrupted);
@@ -345,7 +348,7 @@ pub enum AnySummary {
     Spatial(Box<SummaryInSpace>),
 }
 
-/// Returns a field that planar and three-dimensional summaries have in common.
+/// Evaluates an expression on the contained summary, whether planar or three-dimensional.
 macro_rules! either {
     ($of:expr, $one:pat => $value:expr) => {
         match $of {
@@ -379,8 +382,8 @@ impl AnySummary {
         either!(self, summary => summary.variant)
     }
 
-    /// Returns the changes that would have kept the stack up; `None` if the stack stands, or if no change was searched
-    /// for.
+    /// Returns the changes that would have kept the stack up; `None` if the stack stands, or if no search was
+    /// made.
     pub fn remedy(&self) -> Option<&Remedy> {
         either!(self, summary => summary.remedy.as_ref())
     }

@@ -107,7 +107,8 @@ fn pieces(solid: &Solid) -> Vec<Piece> {
         .collect()
 }
 
-/// Returns the surface of a solid and its mass distribution at unit density; `None` for a compound.
+/// Returns the surface of a solid and its mass distribution at unit density, which a half-space lacks; `None` for a
+/// compound or for invalid barrel dimensions.
 fn simple(solid: &Solid) -> Option<(Surface, Option<Bulk>)> {
     const ROUND: f64 = std::f64::consts::PI;
     let ball = |radius: f64| 4.0 / 3.0 * ROUND * radius * radius * radius;

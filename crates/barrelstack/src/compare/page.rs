@@ -298,8 +298,8 @@ fn cut_short(sides: &[Side]) -> String {
         .to_owned()
 }
 
-/// Returns the name of a run as words that follow a noun, such as "with five levels"; a name that already begins with
-/// "with" or "without" is returned unchanged.
+/// Returns the name of a run as a phrase that can follow a noun, such as "with five levels"; a name that already begins
+/// with "with" or "without" is returned unchanged.
 fn having(side: &Side) -> String {
     let is_said = ["with ", "without "].iter().any(|word| side.name.starts_with(word));
     if is_said { side.name.clone() } else { format!("with {}", side.name) }

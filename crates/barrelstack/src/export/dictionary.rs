@@ -105,12 +105,12 @@ pub fn dictionary(
     ("columns.csv".to_owned(), text.into_bytes())
 }
 
-/// Returns the meaning of a column that is listed under its full name.
+/// Returns the meaning of a column; `None` if its full name is not listed.
 fn equal(name: &str) -> Option<&'static str> {
     MEANINGS.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
 }
 
-/// Returns the meaning of a column whose name ends in a listed suffix.
+/// Returns the meaning of the suffix in which the name of a column ends; `None` if no listed suffix matches.
 fn ends_in(name: &str) -> Option<&'static str> {
     let ends = |end: &str| end.starts_with('_') && name.ends_with(end);
     MEANINGS.iter().find(|(end, _)| ends(end)).map(|(_, meaning)| *meaning)

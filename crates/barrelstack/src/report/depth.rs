@@ -217,9 +217,10 @@ fn rails(rack: &Rack, pitch: f64) -> Vec<f64> {
 
 /// Returns the solids of a rack at full scale, relative to the middle of its underside.
 ///
-/// The outline in the transverse plane is extruded to the width of a rail, once for every rail. Two tubes are assumed
-/// to join the beams at their ends, as in the spatial model. `rise` returns the height (m) of the rail at a position
-/// along the barrels. `chocks` contains the angle (rad) and the gap (m) of chocks.
+/// The outline in the transverse plane is extruded to the width of a rail, once for every rail. In a rack without
+/// posts, two tubes are assumed to join the rails at their ends, as in the spatial model. `rise` returns the height (m)
+/// of the rail at a position along the barrels. `chocks` contains the angle (rad) of the chocks from the vertical, and
+/// the gap (m) between a chock and its barrel; `None` if the rack has no chocks.
 fn frame(
     spec: &StackSpec,
     (level, pitch): (u32, f64),

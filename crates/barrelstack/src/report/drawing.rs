@@ -47,7 +47,8 @@ pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> 
     })
 }
 
-/// Selects, of the two opposite forces of a contact, the one that points upward.
+/// Converts a contact point and one of the two opposite contact forces to the force to draw: the one that points
+/// upward.
 fn pushed(&[x, z, fx, fz]: &[f64; 4]) -> ContactForce {
     let sign = if fz < 0.0 { -1.0 } else { 1.0 };
     ContactForce { x, z, fx: sign * fx, fz: sign * fz }
@@ -116,12 +117,15 @@ pub fn legend(scene: &Scene) -> String {
     legend
 }
 
-/// Displacement (m) below which a body counts as motionless. If no body moves farther, the player
-/// opens at the start of the run.
+/// Displacement (m) below which a body counts as motionless. If no body moves farther, the player first shows the start
+/// of the run.
 const STILL: f64 = 1e-3;
 
-/// Returns the instant at which the player opens: the first loss of seat or, if all seats are kept, the
-/// largest sideways or upward displacement of a body.
+/// Returns the instant that the player shows first: the first loss of seat or, if all seats are kept, the largest
+/// sideways or upward displacement of a body.
+///
+/// Returns `None` if the run is invalid, interrupted or not judged, or if all seats are kept and no body moves farther
+/// than [`STILL`].
 fn moment(run: &Run) -> Option<Moment> {
     match &run.outcome {
         Outcome::Collapse { time, first, .. } => {
@@ -163,7 +167,8 @@ fn furthest(run: &Run) -> Option<Moment> {
     Some(Moment { time, body, text, falls: false })
 }
 
-/// Returns the quantity by which barrels are colored: in each frame, the largest contact stress (kN/m) of every barrel.
+/// Returns the quantity by which barrels are colored: in each frame, the largest contact stress on every barrel, as a
+/// line load (kN/m).
 fn tint(run: &Run) -> Tint {
     let parts = &run.assembly.parts;
     let of = |(part, stress): (&Part, &f64)| {

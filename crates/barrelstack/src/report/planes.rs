@@ -67,8 +67,8 @@ pub(super) fn still(assemblies: &[Assembly]) -> Block {
     })
 }
 
-/// Returns the pane of a plane, with the mark and the name of the plane but without a verdict. The mark is X across the
-/// barrels and Y along the barrels.
+/// Returns the pane of a plane, without a verdict. Its mark is X for the plane across the barrels, and Y for the plane
+/// along the barrels.
 fn of(assembly: &Assembly, scene: Arc<Scene>) -> Pane {
     let (mark, name) = match assembly.view {
         Some(view @ View::Transverse) => ("X", capital(view.words())),

@@ -123,7 +123,7 @@ fn section(blocks: &mut Vec<Block>, level: u8, title: &str, content: Vec<Block>)
     }
 }
 
-/// Appends a section with a heading of level 3; the section is left out on paper.
+/// Appends a section with a heading of level 3; the printed report omits the section.
 fn on_screen(blocks: &mut Vec<Block>, title: &str, content: Vec<Block>) {
     let mut own = Vec::new();
     section(&mut own, 3, title, content);
@@ -190,8 +190,9 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
     Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
-/// Returns a range that contains zero and all values up to half a second after the collapse, with a margin. Returns
-/// `None` if there is no collapse, or if these values are all zero; all values are then shown.
+/// Returns the range of values to plot: it contains zero and all values up to half a second after the collapse, with a
+/// margin at both ends. Returns `None`, with which a plot shows all values, if there is no collapse or if all values up
+/// to that time are zero.
 ///
 /// In a plot over this range, falling bodies leave the plot, as in the histories of Candia, de la Llera and Almazán
 /// (2008).

@@ -214,8 +214,8 @@ pub fn command(remedy: Option<&Remedy>) -> String {
     command.map(|text| text.split(' ').map(word).collect::<Vec<_>>().join(" ")).unwrap_or_default()
 }
 
-/// Returns introductory words that name the run to which a sentence refers, such as "Along the
-/// barrels, in the run that is shown, ".
+/// Returns an introductory phrase that names the run to which a sentence refers, such as "Along the barrels, in the run
+/// that is shown, "; empty if there is only one run.
 fn shown(run: &Run, summary: &Summary) -> String {
     let view = run.assembly.view.filter(|_| summary.other_plane.is_some());
     match (view, summary.ensemble.is_some()) {
@@ -226,7 +226,8 @@ fn shown(run: &Run, summary: &Summary) -> String {
     }
 }
 
-/// Puts introductory words before a sentence, and changes the first letter of the sentence to lower case.
+/// Prepends an introductory phrase to a sentence, and changes the first letter of the sentence to lower case; an empty
+/// phrase leaves the sentence unchanged.
 fn behind(begin: &str, sentence: &str) -> String {
     let mut letters = sentence.chars();
     let first = letters.next().filter(|_| !begin.is_empty());

@@ -64,9 +64,11 @@ impl Remedy {
         format!("{}.{}{}{stopped}", capital(&sentence), self.confidence(), self.over_constants())
     }
 
-    /// States, for each sufficient change, the range of the share of stacks that fall, as the uncertain constants vary.
-    /// If two changes suffice, also names the change with which fewer stacks fall in most random draws of these
-    /// constants, and states the share of such draws. Returns an empty string if a range is unknown.
+    /// States, for each sufficient change, the 95 % range of the share of stacks that fall, as the uncertain constants
+    /// vary. Returns an empty string if a range is unknown.
+    ///
+    /// If two changes suffice, compares them draw by draw over random draws of these constants: names the change with
+    /// which fewer stacks fall in most of the draws, and states the share of these draws.
     fn over_constants(&self) -> String {
         let range = |one: &Tried| {
             one.range.map(|[low, high]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high))
@@ -237,7 +239,7 @@ impl Remedy {
     }
 }
 
-/// Returns the name of a change, such as "three levels" or "five levels strapped together at 4 kN".
+/// Returns the name of a tried change, such as "three levels" or "five levels strapped together at 4 kN".
 pub(super) fn name(tried: &Tried) -> String {
     let levels = counted(tried.levels, "level");
     match tried.pretension {

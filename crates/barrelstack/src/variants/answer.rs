@@ -24,7 +24,7 @@ pub enum Advance {
         /// Number of finished cases: variants and, if it is run, the nominal case. A stack in two planes has one case
         /// per plane for each of them.
         done: usize,
-        /// Total number of cases, counted in the same manner.
+        /// Number of all cases, finished or not, counted like `done`.
         of: usize,
     },
     /// Verdict of the variants with the lowest numbers, reported before the others are run.
@@ -67,7 +67,7 @@ impl Answer {
         planes.any(|shown| shown.run.interrupted || shown.summary.unfinished.is_some())
     }
 
-    /// Returns the answer in one sentence.
+    /// Returns the verdict as text: that of all variants if they were run, otherwise that of the single run.
     pub fn headline(&self) -> String {
         headline(&self.decides.run, &self.decides.summary)
     }
@@ -293,7 +293,7 @@ fn number(choice: RunChoice, variants: Option<&Variants>) -> u32 {
     }
 }
 
-/// Runs the selected variant of each plane, in parallel.
+/// Runs, in parallel, the variant with the given number in each plane.
 fn run_selected(
     scenario: &Scenario,
     tasks: &[(&Plane, u32)],

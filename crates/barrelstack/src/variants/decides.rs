@@ -131,11 +131,11 @@ struct Drawn {
     field: &'static str,
     unit: &'static str,
     dispersion: f64,
-    /// Returns the factor by which a constant is multiplied, from its dispersion and a standard normal deviate.
+    /// Returns the factor by which the constant is multiplied, given its dispersion and a standard normal deviate.
     factor: fn(f64, f64) -> f64,
     /// Multiplies the constant in a contact law by a factor.
     change: fn(&mut Interface, f64),
-    /// Returns the constant of a contact law; `None` if the law has no such constant.
+    /// Returns the value of the constant in a contact law; `None` if the law has no such constant.
     value: fn(&Interface) -> Option<f64>,
     law: Interface,
 }

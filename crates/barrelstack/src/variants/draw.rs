@@ -85,7 +85,8 @@ impl Point {
     }
 }
 
-/// Converts a standard normal deviate to a factor that is uniformly distributed from 1 to `1 + largest`.
+/// Converts a standard normal deviate, through its cumulative probability, to a factor that is uniformly distributed
+/// from 1 to `1 + largest`.
 pub(super) fn excess(largest: f64, deviate: f64) -> f64 {
     1.0 + largest * normal(deviate)
 }

@@ -52,8 +52,8 @@ pub use spread::{FEW, LEVEL, Range, Spread, verdict};
 pub struct Plane {
     /// The nominal case.
     pub scenario: Scenario,
-    /// The motion with the other horizontal component, which applies to the second half of the
-    /// variants if the stack is analyzed in both planes.
+    /// The motion with the other horizontal component, which applies to the second half of the variants if the stack is
+    /// analyzed in both planes; `None` if it is not, or if the motion has no other horizontal component.
     exchanged: Option<MotionSpec>,
 }
 

@@ -6,7 +6,7 @@ use super::spread::{collapsed, fallen, shown};
 use crate::ensemble::CaseResult;
 use crate::outcome::{CollapseMode, Outcome};
 
-/// Numbers of the runs to show.
+/// Variant numbers of the runs to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Order {
     pub(super) typical: u32,

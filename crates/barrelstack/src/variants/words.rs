@@ -59,7 +59,7 @@ impl Judgment {
         spreads.into_iter().map(Self::of).reduce(worse)
     }
 
-    /// Returns the sentence that opens the answer.
+    /// Returns the verdict as a sentence, such as "Not safe.".
     fn words(self) -> String {
         match self {
             Self::Stands => "Stands.".to_owned(),
@@ -79,21 +79,22 @@ impl Judgment {
 /// Plane and statistics of variants; the plane is `None` for a three-dimensional model.
 type Placed<'a> = (Option<View>, &'a Spread);
 
-/// Returns the answer for one plane or for both. In `planes`, the plane across the barrels comes before
-/// the plane along the barrels.
+/// Describes the results of the variants in one plane or in both: the verdict and what supports it. In `planes`, the
+/// plane across the barrels comes before the plane along the barrels.
 pub fn headline(planes: &[(View, &Spread)]) -> String {
     let placed: Vec<Placed<'_>> =
         planes.iter().map(|(view, spread)| (Some(*view), *spread)).collect();
     answer(&placed)
 }
 
-/// Returns the answer for a three-dimensional model of a stack.
+/// Works like [`headline`], for a three-dimensional model of a stack.
 pub fn headline_in_space(spread: &Spread) -> String {
     answer(&[(None, spread)])
 }
 
-/// Builds the answer: events before the shaking, the verdict of the worst plane with the counts of
-/// all planes, and the course of the collapse.
+/// Describes, in this order: variants that fall before the shaking or have no verdict, the verdict of the worst plane
+/// with the counts of all planes, the influence of the uncertain constants in the worst plane, the course of the
+/// collapse if there is only one plane, and stave overload.
 fn answer(planes: &[Placed<'_>]) -> String {
     let mut sentences: Vec<String> = planes.iter().flat_map(|plane| before(*plane)).collect();
     sentences.extend(verdict(planes));

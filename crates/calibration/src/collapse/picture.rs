@@ -23,7 +23,8 @@ pub(super) fn pictures(
         .collect()
 }
 
-/// Returns the courses of the test with the index `at`.
+/// Returns the simulated courses of the test with the index `at`. `courses` holds, for each draw of the parameters in
+/// turn, one course per test.
 fn of<'a>(
     courses: &'a [Option<Course>],
     at: usize,
@@ -32,7 +33,8 @@ fn of<'a>(
     courses.iter().skip(at).step_by(tests.len())
 }
 
-/// Plots, for each test, the posterior weight of the courses with the observed mode; `None` if no mode was observed.
+/// Plots, for each test, the posterior weight of the simulations with the observed mode; `None` if no mode was
+/// observed.
 fn modes(
     tests: &[PreparedTest<'_>],
     courses: &[Option<Course>],
