@@ -75,7 +75,7 @@ impl std::str::FromStr for StopPoint {
     }
 }
 
-/// Makes the program stop when its work reaches `point`, as if by a signal. With `None`, the program is not stopped.
+/// Makes the program stop when its work reaches `point`, as if by a signal. `None` sets no such point.
 pub(crate) fn stop_at(point: Option<StopPoint>) {
     // Only the first call has an effect, and there is only one.
     let _ = STOP_POINT.set(point);

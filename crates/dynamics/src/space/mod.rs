@@ -118,8 +118,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn unrotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
     /// Transforms a spin or moment from the rotated frame to the outer frame.
     fn rotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
-    /// Returns the velocity, due to a spin, of one point of a body relative to another. `arm` is the vector from the
-    /// other point to the point.
+    /// Returns the velocity, due to a spin, of a point P of a body relative to a point Q of the body. `arm` is the
+    /// vector from Q to P.
     fn velocity_at(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
     /// Returns an upper bound on the length of a vector. The bound is cheaper to compute than the length, and close to
     /// the length for most vectors.
