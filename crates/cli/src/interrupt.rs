@@ -11,7 +11,7 @@ use barrelstack_input::system;
 
 use crate::printer;
 
-/// `true` if the user requested a stop; global, because a program can have only one handler.
+/// `true` if the user requested a stop; global, because a program can have only one signal handler.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// `true` if some task polls the stop request.
@@ -75,7 +75,7 @@ impl std::str::FromStr for StopPoint {
     }
 }
 
-/// Makes the program stop when its work reaches `point`, as if by a signal.
+/// Makes the program stop when its work reaches `point`, as if by a signal. `None` sets no such point.
 pub(crate) fn stop_at(point: Option<StopPoint>) {
     // Only the first call has an effect, and there is only one.
     let _ = STOP_POINT.set(point);
@@ -133,7 +133,7 @@ fn end(json: bool) -> ! {
     std::process::exit(i32::from(STATUS))
 }
 
-/// Returns `true` if work was stopped before its end.
+/// Returns `true` if work was stopped before it was finished.
 pub(crate) fn has_stopped() -> bool {
     STOPPED.load(Ordering::Relaxed)
 }

@@ -98,8 +98,10 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         + 'static;
     /// Type of the surfaces that can be the target of a contact.
     type Surface: crate::shape::Surface<Self> + Lanewise<Single = <Self::Single as Space>::Surface>;
-    /// Type of the convex solids that touch a target surface at their deepest point, or along a whole line or face. In
-    /// the plane, this type has no values, since planar convex boundaries touch with their round pieces instead.
+    /// Type of the convex solids that touch a target surface at their deepest point, or along a whole line or face.
+    ///
+    /// In the plane, this type is uninhabited, because the contacts of a convex boundary are those of its corners and
+    /// arcs ([`Round`](crate::body::Round)).
     type Whole: crate::shape::Whole<Self> + Lanewise<Single = <Self::Single as Space>::Whole>;
 
     /// Returns the rotation from the body frame to the inertial frame for an orientation.
@@ -116,7 +118,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn unrotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
     /// Transforms a spin or moment from the rotated frame to the outer frame.
     fn rotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
-    /// Returns the velocity, due to a spin, of a point at the vector `arm` from the axis.
+    /// Returns the velocity, due to a spin, of a point P of a body relative to a point Q of the body. `arm` is the
+    /// vector from Q to P.
     fn velocity_at(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
     /// Returns an upper bound on the length of a vector. The bound is cheaper to compute than the length, and close to
     /// the length for most vectors.

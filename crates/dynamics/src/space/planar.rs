@@ -191,7 +191,7 @@ impl<R: Real> Space for Planar<R> {
         Vec2::new(-(spin * arm.z), spin * arm.x)
     }
     /// Computes the sum of the larger component and √2 − 1 times the smaller component, which exceeds the length by at
-    /// most 8 %.
+    /// most 8.3 %.
     #[inline(always)]
     fn length_bound(vector: Vec2<R>) -> R {
         let (x, z) = (vector.x.abs(), vector.z.abs());

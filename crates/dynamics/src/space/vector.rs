@@ -48,13 +48,13 @@ impl<R: Real> Vec3<R> {
             self.x * other.y - self.y * other.x,
         )
     }
-    /// Returns the vector of the products of corresponding components.
+    /// Returns the component-wise product.
     #[inline(always)]
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
     }
-    /// Returns the vector of the quotients of corresponding components.
+    /// Returns the component-wise quotient.
     #[inline(always)]
     #[must_use]
     pub fn over(self, other: Self) -> Self {

@@ -84,7 +84,7 @@ fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
     folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?.print_summary()
 }
 
-/// Combines consecutive files of the same event, station and time step into one record.
+/// Combines consecutive records of the same event, station and time step into one record.
 fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
     let mut groups: Vec<Vec<Record>> = Vec::new();
     for record in records {

@@ -311,7 +311,8 @@ fn base_names(record: &Record) -> String {
     names.join(", ")
 }
 
-/// Parses a component, first as a name of a channel, then as an azimuth in degrees.
+/// Parses a component. The text is the name of a channel of the record or, if no channel has this name, an azimuth in
+/// degrees or any other designation of a [`Component`].
 pub(super) fn component(record: &Record, name: &str) -> anyhow::Result<Component> {
     let by_name = Component::Name(name.to_owned());
     if record.component(&by_name).is_ok() {
@@ -446,7 +447,7 @@ fn xml_files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Returns the bytes of a file, which may have at most 256 MB.
+/// Returns the bytes of a file; an error if there are more than `LIMIT` bytes.
 pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
     let refused = || format!("cannot read {}", path.display());
     if let Some(bytes) = archives::bytes_inside(path)? {

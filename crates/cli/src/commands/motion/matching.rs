@@ -133,7 +133,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
 enum Part {
     /// The channel with this index.
     One(usize),
-    /// Both horizontal components together, by their spectrum over all directions.
+    /// Both horizontal components; their spectrum over all directions is matched to the target.
     Pair(Horizontals),
 }
 

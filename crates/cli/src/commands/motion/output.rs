@@ -1,5 +1,5 @@
-//! Output of the motion commands: motion files by extension, written atomically, and replaced only
-//! on request.
+//! Output of the motion commands. The extension of a motion file selects its format. Files are written atomically, and
+//! replaced only on request.
 
 use std::path::{Path, PathBuf};
 

@@ -65,7 +65,7 @@ struct Rotated {
     /// Direction of the largest response at each period (degrees): clockwise from north if both azimuths are known,
     /// otherwise from the first component towards the second.
     directions: Vec<f64>,
-    /// Reference of these directions, as stated in column headings.
+    /// Reference from which `directions` are measured, as stated in column headings.
     from: &'static str,
 }
 

@@ -18,7 +18,7 @@ use crate::commands::motion::input;
 #[derive(Debug)]
 pub(super) struct JournalEntry {
     pub(super) record: String,
-    /// Fingerprint of the bytes of the files of the record.
+    /// Fingerprint of the contents of the record's files.
     pub(super) hash: u64,
     pub(super) row: Option<Vec<Option<Value>>>,
     /// Refused files, with reasons.

@@ -83,17 +83,17 @@ pub(super) struct Batch<'a> {
     pub(super) folder: &'a FolderArgs,
     /// Settings that affect the rows, as text; an existing table is continued only if its settings are the same.
     pub(super) settings: String,
-    /// Periods (s) of the spectra; `None` for the periods of the folder options.
+    /// Periods (s) of the spectra; `None` for the periods in `folder`.
     pub(super) periods: Option<Vec<f64>>,
-    /// Extension of the output file of each record; a record whose output file is missing is
-    /// processed again.
+    /// Extension of the output file of each record, or `None` if the batch writes no file per record. A record whose
+    /// output file is missing is processed again.
     pub(super) ending: Option<String>,
     /// Further file formats of the tables.
     pub(super) tables: TableArgs,
 }
 
 impl<'a> Batch<'a> {
-    /// Creates a batch that only measures records. The periods of the spectra are those of the folder options.
+    /// Creates a batch that only measures records. The periods of the spectra are those in `folder`.
     pub(super) fn new(
         input: &'a Input,
         out: &'a Path,
@@ -113,7 +113,8 @@ pub(super) struct Worked {
 }
 
 impl Worked {
-    /// Wraps a record as read. Before it is measured, the default processing of a scenario is applied.
+    /// Wraps a record as read. Before it is measured, it is processed as a scenario processes it by default
+    /// ([`Chain::Default`]).
     pub(super) fn as_read(record: Record) -> Self {
         let before = Chain::Default.of(record.stage);
         Self { record, before }
@@ -131,7 +132,7 @@ pub(super) struct Measurements {
     pub(super) table: StudyTable,
     pub(super) refused: Vec<(String, String)>,
     before: usize,
-    /// `true` if the batch was stopped before its end.
+    /// `true` if the batch was stopped before all records were processed.
     stopped: bool,
     out: PathBuf,
     tables: TableArgs,
@@ -150,9 +151,10 @@ enum Done {
 
 /// Applies `work` to every record, on all cores, and writes the table.
 ///
-/// The files are `records.csv`, `records.parquet`, and `refused.csv` with the reasons.
+/// The table is written to `records.csv` and `records.parquet`. The refused files are listed, with the reasons, in
+/// `refused.csv`.
 ///
-/// Each finished record is added to `rows.jsonl`, with the fingerprint of the bytes of its files.
+/// Each finished record is added to `rows.jsonl`, with the fingerprint of the contents of its files.
 /// After an interruption, the same command continues the work. It processes records again if their
 /// files have changed.
 pub(super) fn run(

@@ -1,4 +1,4 @@
-//! Files of a set of records: its table, and a study that runs with the set.
+//! Files of a set of records: its table, and a study that uses the records as motions.
 
 use std::fmt::Write as _;
 
