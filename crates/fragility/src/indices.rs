@@ -25,7 +25,7 @@ pub struct Index {
 /// Computes the first-order and the total index of every input from blocks of results
 /// `[f(A), f(B), f(A₁B), f(A₂B), …]`.
 ///
-/// In each block, `A` and `B` are two samples of all inputs, and `AᵢB` is `A` with the input `i` of `B`.
+/// In each block, `A` and `B` are two samples of all inputs, and `AᵢB` is `A` with input `i` replaced by that of `B`.
 ///
 /// ```text
 /// first  = mean(f(B) (f(AᵢB) − f(A))) / V        Saltelli et al. 2010, table 2 (b)
@@ -139,8 +139,8 @@ impl Sums {
         Self { count: 0.0, results: 0.0, squares: 0.0, inputs: vec![[0.0; 3]; inputs] }
     }
 
-    /// Adds or removes a block, whose results are centered on `middle`; `sign` is 1 to add the block and −1
-    /// to remove it.
+    /// Subtracts `middle` from the results of a block, and adds the block to the sums (`sign` 1) or removes it from
+    /// them (`sign` −1).
     fn add(&mut self, block: &[f64], middle: f64, sign: f64) {
         let (a, b) = (block[0] - middle, block[1] - middle);
         self.count += sign;

@@ -22,9 +22,9 @@ impl<const N: usize> Score<N> {
 /// An observation of a standard normal variable `Z`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Observation<const N: usize> {
-    /// `Z = z`. The log-density of the capacity `x` is `ln φ(z) + ln ∂z/∂x`, where `∂z/∂x = b/x` and `b` is the slope
-    /// of `z` as a function of `ln x`. The second value is subtracted from `ln φ(z)`. It is `ln x − ln b` if `b` is
-    /// given. If `b` is a parameter, the second value is `ln x`, and [`Likelihood::term`] adds `ln b`.
+    /// `Z = z`, since the capacity `x` is known. Its log-density is `ln φ(z) + ln b − ln x`, where `b` is the slope of
+    /// `z` as a function of `ln x`. The second field is subtracted from `ln φ(z)`. If `b` is not a parameter, this
+    /// field is `ln x − ln b`. If `b` is a parameter, the field is `ln x`, and [`Likelihood::term`] adds `ln b`.
     At(Score<N>, f64),
     /// `Z` is at most `z`.
     Below(Score<N>),
@@ -34,7 +34,7 @@ pub(crate) enum Observation<const N: usize> {
     Between(Score<N>, Score<N>),
 }
 
-/// Weighted sum of log-likelihoods.
+/// Weighted sum of the log-likelihoods of observations.
 #[derive(Clone, Debug)]
 pub(crate) struct Likelihood<const N: usize> {
     pub terms: Vec<(Observation<N>, f64)>,

@@ -141,7 +141,8 @@ pub fn monotony(
 /// first.
 ///
 /// If there are several such pairs, the one whose first stripe has the highest intensity is returned; if there are
-/// several of these, the one whose second stripe has the lowest intensity.
+/// several of these, the one whose second stripe has the lowest intensity. `None` is returned if the fraction never
+/// decreases.
 fn steepest(stripes: &[Stripe]) -> Option<(Stripe, Stripe)> {
     let mut found: Option<(f64, Stripe, Stripe)> = None;
     for (i, from) in stripes.iter().enumerate() {

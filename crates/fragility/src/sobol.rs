@@ -67,8 +67,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Creates a dimension, counted from 0, with a digital shift, which preserves the net property (Owen
-    /// 1995).
+    /// Creates the axis of a dimension. Dimensions are counted from 0. `shift` is a digital shift, which preserves the
+    /// net property (Owen 1995).
     pub fn new(dimension: usize, shift: u32) -> Self {
         Self { directions: directions(dimension), shift }
     }

@@ -36,7 +36,7 @@ const PRIOR_GROUPS: f64 = 0.6;
 /// Standard deviation of the normal prior distribution of `b₁`, the coefficient of the logarithm of the intensity.
 const PRIOR_SLOPE: f64 = 4.0;
 
-/// Scale of the prior distribution of `bₓ`, by which the share at a single intensity departs from the curve.
+/// Scale of the prior distribution of `bₓ`, the departure of the share at a single intensity from the lognormal curve.
 const PRIOR_LEVELS: f64 = 0.3;
 
 /// Index of the constant term `b` of the regression in a sample of [`Conditional`].
@@ -77,7 +77,7 @@ pub struct Conditional {
     samples: Vec<Vec<f64>>,
     /// For each sample, the values of the constants that are drawn with it, as standard normal deviates.
     points: Vec<Vec<f64>>,
-    /// Correlations of the deviates.
+    /// Correlation matrix of the deviates.
     correlations: Vec<Vec<f64>>,
 }
 
@@ -246,20 +246,20 @@ pub enum Shape {
 /// b(x)        = b₀ + b₁ ln(x/x₀) + bₓ
 /// ```
 ///
-/// `bₓ` is the departure of the share at the intensity `x` from the curve; it is 0 for [`Shape::Lognormal`]. In the
-/// regression, the runs under one motion have a common coefficient, so that they do not count as independent. `σ` is
-/// the standard deviation of these coefficients. The effects of the constants are the same at all intensities. The
-/// method is that of [`conditional`].
+/// `bₓ` is the departure of the share at the intensity `x` from the lognormal curve; it is 0 for [`Shape::Lognormal`].
+/// In the regression, the runs under one motion have a common coefficient, so that they do not count as independent.
+/// `σ` is the standard deviation of these coefficients. The effects of the constants are the same at all intensities.
+/// The method is that of [`conditional`].
 #[derive(Clone, Debug)]
 pub struct Intensities {
     /// For each sample, the coefficients `b₀`, `b₁`, `bₓ` (one for each of `levels`), `aⱼ` and `cᵢⱼ`, and finally `σ`.
     samples: Vec<Vec<f64>>,
-    /// Intensities at which the share may depart from the curve.
+    /// Intensities at which the share may depart from the lognormal curve.
     levels: Vec<f64>,
     /// `x₀`: the geometric mean of the intensities of all runs.
     middle: f64,
     shape: Shape,
-    /// Correlations of the deviates.
+    /// Correlation matrix of the deviates.
     correlations: Vec<Vec<f64>>,
 }
 

@@ -32,7 +32,7 @@ pub struct Variants {
     pub list: &'static [Variant],
 }
 
-/// Fields present for one value of the tag field.
+/// Set of fields that a table has if the tag field has one specific value.
 #[derive(Debug)]
 pub struct Variant {
     /// Value of the tag field that selects this variant.

@@ -231,7 +231,7 @@ impl Table {
         self.rows.iter().map(entry).collect()
     }
 
-    /// Returns the index and the unit of a column.
+    /// Returns the index and the unit of the only column with the given name. The unit must have the given dimension.
     fn place(&self, name: &str, dimension: Dimension) -> Result<(usize, &str), TableError> {
         let mut found = self.columns.iter().enumerate().filter(|(_, column)| column.is(name));
         let example = || format!("`{name} ({})`", dimension.si_unit());

@@ -192,7 +192,8 @@ pub fn origin_at(table: &Table, keys: &[&str]) -> Option<Origin> {
     node_at(table, keys).map(|node| node.origin)
 }
 
-/// Returns the value at a path together with its origin; paths are as for [`origin_at`].
+/// Returns the value at a path together with its origin, or `None` if there is no value. Paths are as for
+/// [`origin_at`].
 pub fn node_at<'a>(table: &'a Table, keys: &[&str]) -> Option<&'a Node> {
     let (key, rest) = keys.split_first()?;
     let mut node = &table.get(key)?.node;

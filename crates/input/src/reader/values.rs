@@ -116,8 +116,8 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads an integer, which must lie in the range of [`Kind::Integer`], from a node. Panics if `kind` is any other
-    /// kind.
+    /// Reads an integer from a node. The integer must lie within the bounds of `kind`. Panics unless `kind` is a
+    /// [`Kind::Integer`].
     pub fn read_integer(&self, name: &str, node: &Node, kind: Kind) -> Result<i64> {
         let Kind::Integer(least, greatest) = kind else { self.defined_otherwise(name) };
         let Value::Integer(value) = node.value else {
@@ -234,12 +234,12 @@ impl Reader<'_> {
         }))
     }
 
-    /// Reads a required value of type `T`, which the file contains by name.
+    /// Reads a required value of type `T`, which is written by name in the file.
     pub fn choice<T: Named>(&self, name: &'static str) -> Result<T> {
         self.required(name, self.optional_choice(name))
     }
 
-    /// Reads an optional value of type `T`, which the file contains by name.
+    /// Reads an optional value of type `T`, which is written by name in the file.
     pub fn optional_choice<T: Named>(&self, name: &'static str) -> Result<Option<T>> {
         self.value(name, |reader, _, node| {
             let text = reader.read_name(name, node, &crate::field::names::<T>())?;
@@ -248,12 +248,12 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a required name, which must be one of the names of [`Kind::Choice`].
+    /// Reads a required name, which must be one of the names that the [`Kind::Choice`] of the field lists.
     pub fn catalog_name(&self, name: &'static str) -> Result<String> {
         self.required(name, self.optional_catalog_name(name))
     }
 
-    /// Reads an optional name, which must be one of the names of [`Kind::Choice`].
+    /// Reads an optional name, which must be one of the names that the [`Kind::Choice`] of the field lists.
     pub fn optional_catalog_name(&self, name: &'static str) -> Result<Option<String>> {
         self.value(name, |reader, field, node| {
             let Kind::Choice(names) = field.kind else { reader.defined_otherwise(name) };
