@@ -105,7 +105,8 @@ impl Record {
 }
 
 /// Makes a channel begin `late` seconds later and last `length` seconds. Returns the fraction of a
-/// time step by which the channel was shifted by interpolation; `None` if it was not interpolated.
+/// time step by which the channel was shifted by interpolation; `None` if it was not interpolated. If
+/// `corrected` is `true`, the initial velocity becomes the velocity at the new first sample.
 fn begin_later(channel: &mut Channel, late: f64, length: f64, corrected: bool) -> Option<f64> {
     let steps = late / channel.time_step;
     let part = steps - steps.round();

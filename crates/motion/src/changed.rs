@@ -25,7 +25,7 @@ impl Channel {
 }
 
 impl Record {
-    /// Processes all channels and adds every step to the notes.
+    /// Returns the record with all channels processed. Every step is added to the notes.
     ///
     /// ```
     /// use barrelstack_motion::{Processing, bundled};
@@ -58,7 +58,7 @@ impl Record {
         Ok(out)
     }
 
-    /// Multiplies all channels by one factor.
+    /// Returns the record with all channels multiplied by one factor.
     ///
     /// This method adds no note, because only the caller knows the purpose of the factor.
     #[must_use]
@@ -74,9 +74,11 @@ impl Record {
         out
     }
 
-    /// Matches one channel (counted from 0) to a target spectrum; `named` is the name of the target in
-    /// the notes. All other channels are only multiplied by the factor that scales the matched channel
-    /// to the target on average.
+    /// Returns the record with the channel at index `place` matched to a target spectrum, and the outcome of
+    /// the match. `named` is the name of the target in the notes.
+    ///
+    /// Before it is matched, the channel is scaled as described for [`GroundMotion::match_spectrum`]. All other
+    /// channels are only multiplied by the same factor.
     ///
     /// If `nearly` is `true`, the best motion is accepted even if the tolerance is not reached.
     ///
@@ -96,9 +98,9 @@ impl Record {
             available: self.channels.len().to_string(),
         })?;
         let horizontal = History::Sampled(channel.sampled()?);
-        // Matching multiplies a vertical component only by the factor that scales the motion to the
-        // target on average. A vertical component of constant acceleration 1 therefore returns this
-        // factor, which is then applied to all other channels.
+        // Before the match, the motion is multiplied by one factor; for a vertical component, this is the only
+        // change. A vertical component of constant acceleration 1 therefore returns this factor, which is then
+        // applied to all other channels.
         let probe = History::Sampled(Sampled::new(1.0, vec![1.0, 1.0])?);
         let given = GroundMotion::new(channel.name.clone(), horizontal, Some(probe));
         let matched = if nearly {
@@ -146,14 +148,15 @@ impl Record {
         Ok((after, matched))
     }
 
-    /// Matches the response of both horizontal components over all directions (`RotD50` or
-    /// `RotD100`) to a target spectrum; `named` is the name of the target in the notes. All other
-    /// channels are only multiplied by the factor that scales this response to the target on average.
+    /// Returns the record with both horizontal components matched together to a target spectrum, and the
+    /// outcome of the match. `measure` is `RotD50` or `RotD100`; `named` is the name of the target in the notes.
     ///
-    /// The amplitudes of both components are multiplied by one gain, which keeps their
-    /// polarization. Then wavelets are added along the directions of the measured response;
-    /// `settings.method` is not used. If `nearly` is `true`, the best motion is accepted even if
-    /// the tolerance is not reached.
+    /// First, all channels are multiplied by one factor: the geometric mean, over the matched range of periods, of the
+    /// ratio of target to response spectrum. The other channels are not changed further. Then the Fourier
+    /// amplitudes of both components are multiplied by a gain that depends on the frequency; it is the same for
+    /// both components, which keeps their polarization. Finally, wavelets are added along the directions of the
+    /// measured response. `settings.method` is not used. If `nearly` is `true`, the best motion is accepted even
+    /// if the tolerance is not reached.
     ///
     /// # Errors
     /// The same as for [`Record::horizontal_pair`], and if a setting is out of range, the measure

@@ -10,7 +10,7 @@ pub struct Missed {
     pub from: f64,
     /// Longest period of the range (s).
     pub to: f64,
-    /// Largest relative misfit in the range; negative if the spectrum is below the target.
+    /// Relative misfit of the largest magnitude in the range; negative if the spectrum is below the target.
     pub misfit: f64,
 }
 
@@ -21,7 +21,7 @@ const MOST_LISTED: usize = 5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matched {
     /// The motion. The horizontal component is matched; the vertical component is only multiplied by
-    /// the factor that scales the horizontal component to the target on average.
+    /// the factor described for [`GroundMotion::match_spectrum`].
     pub motion: GroundMotion,
     /// Largest relative misfit at any period from the shortest to the longest matched period, on a grid of
     /// 1080 periods per decade.
@@ -32,9 +32,9 @@ pub struct Matched {
     pub rounds: usize,
     /// The requested method.
     pub chosen: MatchMethod,
-    /// Method with which the attempt that produced the motion began. This is the requested method, or
-    /// the frequency domain if wavelets alone missed the tolerance and a restart in the frequency
-    /// domain came closer.
+    /// First method of the attempt that produced the motion. This is the requested method, or the
+    /// frequency domain if wavelets alone missed the tolerance and a restart in the frequency domain
+    /// came closer.
     pub first: MatchMethod,
 }
 

@@ -96,9 +96,10 @@ pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 impl GroundMotion {
     /// Matches the horizontal component to a target spectrum.
     ///
-    /// The motion is first scaled to the target on average; a vertical component is multiplied only
-    /// by this factor. Every round ends by bringing the final velocity and displacement to zero, so
-    /// that the result does not drift.
+    /// The motion is first multiplied by one factor: the geometric mean, over the matched range of
+    /// periods, of the ratio of target to response spectrum. A vertical component is not changed
+    /// further. Every round ends by bringing the final velocity and displacement to zero, so that the
+    /// result does not drift.
     ///
     /// # Errors
     /// If a setting is out of range, the motion is zero, or the tolerance is not reached.
@@ -263,7 +264,7 @@ pub(crate) fn matched_periods(settings: &Matching, round: usize) -> Vec<f64> {
     periods
 }
 
-/// Returns the geometric mean of the ratio of target to spectrum.
+/// Returns the geometric mean, over all periods, of the ratio of target to response spectrum.
 pub(crate) fn mean_ratio(goal: &[f64], now: &[f64]) -> f64 {
     let sum: f64 = goal.iter().zip(now).map(|(g, n)| math::ln(g / n)).sum();
     math::exp(sum / goal.len() as f64)
@@ -418,8 +419,8 @@ impl<'a> Work<'a> {
         Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
-    /// Runs the methods in turn. Returns the best motion and the method with which the attempt that
-    /// produced it began ([`Matched::first`]).
+    /// Runs the methods in turn. Returns the best motion and the first method of the attempt that
+    /// produced it ([`Matched::first`]).
     ///
     /// If the time domain is requested, the first attempt adds wavelets to `start`. If it misses the
     /// tolerance, or if the frequency domain is requested, every further attempt begins in the

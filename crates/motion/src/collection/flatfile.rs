@@ -35,7 +35,7 @@ pub struct Flatfile {
 }
 
 /// Names of the column with the record sequence number, in lower case: the name in the published table, then the names
-/// in abridged versions. The constants below without a comment contain the names of other columns.
+/// in abridged versions. The other constants of type `&[&str]` list the names of other columns.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
 const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
 const STATION: &[&str] = &["station name", "station", "station_code"];

@@ -1,4 +1,4 @@
-//! Smoothing of Fourier amplitudes over the logarithm of frequency.
+//! Smoothing of Fourier amplitudes on a logarithmic frequency axis.
 
 use crate::math;
 

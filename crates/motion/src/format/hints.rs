@@ -1,4 +1,4 @@
-//! Options of the caller. The module also tracks which options the reader has used.
+//! Options given by the caller, with flags for the options that a reader has used.
 
 use std::cell::{Cell, RefCell};
 
@@ -12,7 +12,7 @@ use crate::utc::Utc;
 /// rounding.
 const LARGEST_DIFFERENCE: f64 = 0.005;
 
-/// Options of the caller, with flags for the options that a reader has used.
+/// Options given by the caller, with flags for the options that a reader has used.
 ///
 /// A reader queries only information that the file does not state. Unused options are ignored and
 /// reported.
@@ -70,8 +70,8 @@ impl<'a> Hints<'a> {
         self.options.sensitivity
     }
 
-    /// Returns the first of the caller's metadata that apply to the channel `seed` at the time
-    /// `start`.
+    /// Returns the first entry of the caller's metadata that applies to the channel `seed` at the time
+    /// `start`; `None` if no entry applies.
     pub(super) fn instrument(&self, seed: &SeedName, start: Option<Utc>) -> Option<&'a Instrument> {
         self.sensitivity.set(true);
         let mut fitting =
@@ -102,8 +102,8 @@ impl<'a> Hints<'a> {
         self.contradiction.borrow().clone()
     }
 
-    /// Formats, for the error about a missing sensitivity, the finding that no metadata match a
-    /// channel.
+    /// Formats the statement that no metadata match a channel, for the error about a missing
+    /// sensitivity.
     pub(super) fn no_instrument(&self, seed: &SeedName, start: Option<Utc>) -> String {
         let count = self.options.instruments.len();
         if count == 0 {

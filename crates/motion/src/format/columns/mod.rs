@@ -321,7 +321,7 @@ fn accelerations(
 }
 
 /// Refuses placeholders for missing values among accelerations. `first` is the line of the first
-/// row, or `None` if the rows of the table may differ from the lines of the file.
+/// row, or `None` if a row of the table may not be a line of the file.
 fn require_no_mark(
     source: &Source<'_>,
     table: &[Vec<f64>],
@@ -477,8 +477,8 @@ fn initial_velocities(
     Ok(Vec::new())
 }
 
-/// Returns the factor that converts each column to SI units. The unit is stated next to the name of
-/// the column, in the header, or by the caller.
+/// Returns the factors that convert the columns to SI units, one per column. The unit of a column is
+/// stated next to its name, in the header, or by the caller.
 fn units(
     source: &Source<'_>,
     first: usize,

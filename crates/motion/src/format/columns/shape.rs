@@ -160,7 +160,8 @@ pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
 }
 
 /// Returns one flag per column: `true` if, in every row, the value of the column is the length of a vector, within
-/// 1 %. The components of the vector are the values in all other columns, or in two or three adjacent ones of them.
+/// 1 %. The components of the vector are the values in all other columns, or in two or three of the other columns that
+/// are adjacent.
 pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
     let is_length = |at: usize| {
         let of = &columns[at];
