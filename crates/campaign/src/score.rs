@@ -170,7 +170,7 @@ pub struct Sheet {
     pub stated_levels: u32,
     /// Protocol of the score.
     pub protocol: Protocol,
-    /// Result of every state in every direction.
+    /// One result for each combination of a state of the stack and a direction of shaking.
     pub rows: Vec<Scored>,
     /// Report page.
     pub document: Document,
@@ -253,7 +253,7 @@ pub enum ScoreError {
     Decision(#[from] DecisionError),
     /// The runs do not determine a score.
     #[error(
-        "no score can be computed from the runs of stacks in the state \"{state}\" that are shaken {direction}"
+        "no score can be computed from the runs in the state \"{state}\" with shaking {direction}"
     )]
     Curve {
         /// Name of the state.
