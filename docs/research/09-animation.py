@@ -16,4 +16,4 @@ film
 # %% [markdown]
 # The first body leaves its seat within the animation. It shows one run of the nominal stack; a verdict needs the variants, some of which fall at another time or to the other side.
 #
-# A cell of a long run is kept below 1 MB by fewer pictures per second (`rate`) or by a part of the run (`between`).
+# A cell of a long run is kept below 1 MB by fewer frames per second (`rate`) or by a part of the run (`between`).

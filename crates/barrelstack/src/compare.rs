@@ -354,7 +354,7 @@ described! {
     /// An input whose value is not the same in all runs.
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct Difference {
-        /// Path of the input, as in an override.
+        /// Path of the input in the scenario, such as `stack.levels`.
         pub path: String,
         /// Meaning of the input.
         pub help: &'static str,

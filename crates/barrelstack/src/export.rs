@@ -48,9 +48,9 @@ pub enum ExportError {
         /// Name of a file in the folder.
         file: String,
     },
-    /// A file to be replaced was not written by an earlier run, or was changed since.
+    /// A file to be replaced was not written by an earlier run, or has been changed since.
     #[error(
-        "{file} in {folder} was not written by an earlier run, or was changed since",
+        "{file} in {folder} was not written by an earlier run, or has been changed since",
         folder = folder.display()
     )]
     Foreign {
@@ -149,7 +149,7 @@ impl Folder {
     /// files) to be replaced.
     ///
     /// # Errors
-    /// When a file that would be replaced was not written by a run, or was changed since.
+    /// When a file that would be replaced was not written by a run, or has been changed since.
     pub fn prepare_again(path: &Path) -> Result<Self, ExportError> {
         let folder = Self::prepare(path, true)?;
         let changed =

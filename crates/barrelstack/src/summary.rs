@@ -75,7 +75,7 @@ described! {
     pub struct Unfinished {
         /// Number of finished runs.
         pub done: usize,
-        /// Number of all runs.
+        /// Total number of runs.
         pub of: usize,
     }
 
@@ -190,7 +190,7 @@ described! {
     pub struct EnergyBalance of balance: &EnergySummary {
         /// Kinetic energy.
         pub kinetic: f64 as "J" = balance.kinetic,
-        /// Potential energy in gravity.
+        /// Gravitational potential energy.
         pub potential: f64 as "J" = balance.potential,
         /// Energy stored in contact springs and force elements.
         pub elastic: f64 as "J" = balance.elastic,

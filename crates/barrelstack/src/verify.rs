@@ -42,7 +42,7 @@ described! {
         /// Time until which every body in every repeat stays within the distance `apart` of its position in the run;
         /// null if this holds to the end of the run.
         pub predictable_until: Option<f64> as "s",
-        /// Properties of the run that all repeats share.
+        /// Agreement between the run and its repeats.
         pub robust: Robust,
         /// The repeats.
         pub repeats: Vec<Repeat>,
@@ -70,12 +70,12 @@ described! {
         falls: Vec<Option<f64>>,
     }
 
-    /// A repeat that was not made.
+    /// A repeat that was not made, or was stopped.
     #[derive(Clone, Debug)]
     pub struct Skipped {
-        /// What the repeat would have changed.
+        /// Name of the repeat, such as "nodes at half the spacing".
         pub change: &'static str,
-        /// Why the repeat was not made.
+        /// Reason why the repeat was not made, or was stopped.
         pub reason: String,
     }
 }

@@ -254,7 +254,7 @@ pub enum ScoreError {
     Decision(#[from] DecisionError),
     /// The runs do not determine a score.
     #[error(
-        "no score can be computed from the runs of stacks in the state \"{state}\" that are shaken {direction}"
+        "no score can be computed from the runs in the state \"{state}\" with shaking {direction}"
     )]
     Curve {
         /// Name of the state.

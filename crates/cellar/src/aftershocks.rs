@@ -54,9 +54,9 @@ described! {
         pub program: &'static str,
         /// Version of the program.
         pub version: &'static str,
-        /// Source of the motions and their processing, one sentence each.
+        /// Sentences on the sources of the motions, on their processing, and on bodies that do not start as built.
         pub provenance: Vec<String>,
-        /// Wall-clock time of the work; null if not measured.
+        /// Wall-clock time of the computation; null if not measured.
         pub wall_seconds: Option<f64> as "s",
     }
 

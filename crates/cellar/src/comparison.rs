@@ -115,8 +115,8 @@ described! {
         pub share_lost: Estimate as "1",
         /// Expected loss of wine, under the central assumption on how many fallen barrels burst.
         pub wine_lost: f64 as "m3",
-        /// Lower and upper estimate of the cost (barrels that burst, and their wine), under the central assumption on
-        /// how many burst.
+        /// Cost of the barrels that burst and of their wine, at the lower and at the upper estimate of the prices. The
+        /// number of barrels that burst is that of the central assumption.
         pub cost: [f64; 2] as "US$",
         /// The aisles.
         pub aisles: Vec<AisleAnswer>,
@@ -126,8 +126,9 @@ described! {
         pub first_barrel: Option<Range> as "s",
         /// Largest force on a wall or column in any variant; null if there are no walls or columns.
         pub peak_force: Option<f64> as "N",
-        /// Time from the end of the run that is shown to the end of its motion, or the longest such time in a sequence
-        /// of shocks; null if the run covers its motion.
+        /// Time from the end of the run that is shown to the end of the ground motion, if stacks still move when the
+        /// run ends; in a sequence of shocks, the longest such time. Null if the run covers the ground motion, or if
+        /// all stacks are at rest when it ends.
         pub cut: Option<f64> as "s",
     }
 
@@ -167,11 +168,11 @@ described! {
         /// Expected loss of wine, under the central assumption on how many fallen barrels burst. This assumption is
         /// less certain than the number of barrels, so no interval is given.
         pub wine_lost: Change as "m3",
-        /// Lower estimate of the cost (barrels that burst, and their wine), under the central assumption on how many
-        /// burst; no interval is given.
+        /// Cost of the barrels that burst and of their wine, at the lower estimate of the prices. The number of barrels
+        /// that burst is that of the central assumption; no interval is given.
         pub cost_low: Change as "US$",
-        /// Upper estimate of the cost (barrels that burst, and their wine), under the central assumption on how many
-        /// burst; no interval is given.
+        /// Cost of the barrels that burst and of their wine, at the upper estimate of the prices. The number of barrels
+        /// that burst is that of the central assumption; no interval is given.
         pub cost_high: Change as "US$",
     }
 
@@ -190,12 +191,12 @@ described! {
         pub interval: Option<[f64; 2]> as "that of the field",
     }
 
-    /// A change that was not run.
+    /// A change for which no run was made.
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct LeftOut {
-        /// Name of the change that was not run.
+        /// Name of the change.
         pub name: String,
-        /// Reason why the change was not run.
+        /// Reason why no run with this change was made.
         pub reason: String,
     }
 }

@@ -142,7 +142,7 @@ described! {
         pub narrowest: f64 as "m",
     }
 
-    /// A place where people work, before the shaking.
+    /// Access to a door, before the shaking, from a place where people work.
     #[derive(Clone, Debug)]
     pub struct PlacePlan {
         /// Name of the place.

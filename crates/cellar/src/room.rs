@@ -160,8 +160,8 @@ pub enum RoomFailure {
     },
     /// A pose from which a stack starts is invalid.
     #[error(
-        "stack \"{name}\": the pose of body {body} is not finite, or its quaternion is not of length one: state position \
-         (m) and unit quaternion"
+        "stack \"{name}\": the pose of body {body} is not finite, or its quaternion is not of length one: give a \
+         finite position (m) and a unit quaternion"
     )]
     Pose {
         /// Name of the stack.
@@ -196,7 +196,7 @@ pub enum RoomFailure {
         depth: f64,
     },
     /// A side length of an obstacle is not positive, or not finite.
-    #[error("obstacle \"{name}\" has a side of {side} m: give it three positive sides")]
+    #[error("obstacle \"{name}\" has a side of {side} m: give it three positive side lengths")]
     Side {
         /// Name of the obstacle.
         name: String,

@@ -102,7 +102,7 @@ section! {
     /// An aisle.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Aisle;
-    /// An aisle: a rectangle that people walk along its longer side.
+    /// An aisle: a rectangle along whose longer side people walk.
     pub static AISLE = "aisle";
     /// Unique name.
     name: String = Kind::Text, Default::Required;
@@ -604,8 +604,9 @@ impl Cellar {
         for (at, column) in (1..).zip(&self.columns) {
             let [a, b] = column.size;
             if a <= 0.0 || b <= 0.0 {
-                let message =
-                    format!("a column has sides of {a} m and {b} m: give it two positive sides");
+                let message = format!(
+                    "a column has sides of {a} m and {b} m: give it two positive side lengths"
+                );
                 return Err(self.host.error(&[&format!("column.{at}.size")], message));
             }
             let ends = column.corners();

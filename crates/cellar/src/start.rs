@@ -47,7 +47,7 @@ table! {
     /// `body` (empty for the whole stack), and either shifts (`dx (m)`, `dy (m)`, `dz (m)`, `turn (deg)`) or, for all
     /// bodies of a stack, poses in the frame of the stack (`x (m)`, `y (m)`, `z (m)`, `qw`, `qx`, `qy`, `qz`).
     file = Kind::Text, Default::Nothing;
-    /// Shifts that are applied in this order, after the shifts of the file.
+    /// Shifts, applied in the order of this list, after the shifts in `file`.
     shift = Kind::Tables(&SHIFT), Default::Nothing;
 }
 

@@ -68,9 +68,9 @@ described! {
         pub program: &'static str,
         /// Version of the program.
         pub version: &'static str,
-        /// Source of the motion and its processing, and of the places from which bodies start, one sentence each.
+        /// Sentences on the source of the motion, on its processing, and on bodies that do not start as built.
         pub provenance: Vec<String>,
-        /// Wall-clock time of the work; null if not measured.
+        /// Wall-clock time of the computation; null if not measured.
         pub wall_seconds: Option<f64> as "s",
     }
 
@@ -125,8 +125,8 @@ described! {
         pub burst: [f64; 3] as "1",
         /// Expected loss of wine, under the three assumptions of `burst`.
         pub wine_lost: [f64; 3] as "m3",
-        /// Lower and upper estimate of the cost (barrels that burst, and their wine), under the central assumption on
-        /// how many burst.
+        /// Cost of the barrels that burst and of their wine, at the lower and at the upper estimate of the prices. The
+        /// number of barrels that burst is that of the central assumption.
         pub cost: [f64; 2] as "US$",
         /// Largest force on a wall or column in any variant; null if there are no walls or columns.
         pub peak_force: Option<f64> as "N",
@@ -184,7 +184,7 @@ described! {
         pub impulse: Option<Range> as "N s",
         /// Mean number of barrels that fall from the stack.
         pub barrels_fallen: f64 as "1",
-        /// Expected loss of the wine of the stack, under the central assumption on how many fallen barrels burst.
+        /// Expected volume of wine that the stack loses, under the central assumption on how many fallen barrels burst.
         pub wine_lost: f64 as "m3",
         /// Distribution of the largest horizontal displacement of a body of the stack at the end of the run, over the
         /// variants in which the stack stands.
@@ -245,7 +245,7 @@ described! {
         pub onset: f64 as "s",
         /// Mean number of stacks that stand before the shock.
         pub stood: f64 as "1",
-        /// Number of variants in which a stack stands before the shock.
+        /// Number of variants in which at least one stack stands before the shock.
         pub stood_in: u32,
         /// Variants in which all stacks that stand before the shock survive it, out of `stood_in`.
         pub all_survive: Count,
@@ -297,11 +297,11 @@ described! {
         pub barrels_fallen: usize,
         /// Number of stacks in which a body still moves when the shock ends.
         pub still_moving: usize,
-        /// End of the run, as a time in the record of the shock. A run ends when all bodies rest or its duration is
-        /// over, unless it is stopped earlier.
+        /// End of the run, as a time in the record of the shock. A run ends when all bodies have come to rest or its
+        /// duration has elapsed, unless it is stopped earlier.
         pub end_time: f64 as "s",
-        /// Time from the end of the run to the end of the motion of the shock, if stacks still move when the run ends;
-        /// 0 if the run covers the motion or all stacks are at rest.
+        /// Time from the end of the run to the end of the ground motion of the shock, if stacks still move when the run
+        /// ends. 0 if the run covers this ground motion, or if all stacks are at rest when it ends.
         pub cut: f64 as "s",
     }
 
@@ -312,11 +312,12 @@ described! {
         pub variant: u32,
         /// True if this run is the most typical of the counted runs.
         pub typical: bool,
-        /// End of the run, as a time in the record. A run ends when all bodies rest or its duration is over, unless it
-        /// is stopped earlier.
+        /// End of the run, as a time in the record. A run ends when all bodies have come to rest or its duration has
+        /// elapsed, unless it is stopped earlier.
         pub end_time: f64 as "s",
-        /// Time from the end of the run to the end of its motion, if stacks still move when the run ends; for a
-        /// sequence, the longest such time of its shocks; 0 if the run covers the motion or all stacks are at rest.
+        /// Time from the end of the run to the end of the ground motion, if stacks still move when the run ends; in a
+        /// sequence of shocks, the longest such time. 0 if the run covers the ground motion, or if all stacks are at
+        /// rest when it ends.
         pub cut: f64 as "s",
         /// Row of the first stack that falls.
         pub starts: Option<u32>,

@@ -34,7 +34,8 @@ pub(crate) struct Args {
     /// Command to run.
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Stop the program, as Ctrl-C would, when its work reaches the point WORK:THINGS:DONE; for tests.
+    /// Stop the program, as Ctrl-C would, at a point such as 2:runs:3: three runs of the second task are done; for
+    /// tests.
     #[arg(long, global = true, hide = true, value_name = "POINT")]
     pub(crate) stop_at: Option<crate::interrupt::StopPoint>,
 }

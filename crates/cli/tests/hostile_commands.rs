@@ -400,7 +400,7 @@ fn what_is_no_file_is_refused_by_every_command_that_reads() {
     cases.end(200);
 }
 
-/// Returns a record of 300 samples as AT2, and as the program's own text and NPZ.
+/// Returns a record of 300 samples as AT2, CSV and NPZ, and in the program's own text format.
 fn records(cases: &mut Cases) -> Vec<String> {
     ["at2", "txt", "csv", "npz"]
         .map(|ending| {

@@ -322,7 +322,7 @@ mod tests {
             parts: Vec<Part>,
             /// Its contents.
             inner: Option<Box<Thing>>,
-            /// Internal data.
+            /// True if the thing is hidden; not in the document.
             #[serde(skip)]
             hidden: bool,
         }

@@ -154,7 +154,7 @@ def test_an_animation_of_the_demo_fits_into_a_cell(tmp_path: Path) -> None:
     assert (tmp_path / "film.html").read_text(encoding="utf-8") == film.html()
     with pytest.raises(ValueError, match=r"\.html"):
         film.save(tmp_path / "film.gif")
-    with pytest.raises(ValueError, match="pictures per second"):
+    with pytest.raises(ValueError, match="frames per second"):
         run.animate(rate=0.0)
     with pytest.raises(ValueError, match="run ends"):
         run.animate(between=(1e4, 2e4))

@@ -48,7 +48,7 @@ described! {
     pub struct AtRest {
         /// Number of steps taken to find equilibrium.
         pub steps: u64,
-        /// Largest distance by which a body sank into its contacts.
+        /// Largest distance by which a body sank while the stack came to rest.
         pub deepest_sinking: f64 as "m",
         /// Largest residual acceleration of any body, as a fraction of gravity.
         pub unbalanced: f64 as "1",

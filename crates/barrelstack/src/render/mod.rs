@@ -69,7 +69,7 @@ pub struct Rendering {
     pub dpi: f64,
     /// Paper size of the report.
     pub paper: Paper,
-    /// Number of pictures, and of ParaView time steps, per second of simulated time.
+    /// Number of frames, and of ParaView time steps, per second of simulated time.
     pub rate: f64,
     /// Time interval (s) to render; `None` for the whole run.
     pub between: Option<[f64; 2]>,
@@ -106,7 +106,7 @@ impl Rendering {
             return expected("20 to 1200 dots per inch, such as 300", &self.dpi);
         }
         if !(self.rate.is_finite() && self.rate > 0.0) {
-            return expected("a number of pictures per second above zero, such as 20", &self.rate);
+            return expected("a number of frames per second above zero, such as 20", &self.rate);
         }
         if !(64..=4096).contains(&self.largest) {
             return expected("64 to 4096 pixels, such as 480", &self.largest);

@@ -26,7 +26,8 @@ described! {
         pub unfinished: Option<Unfinished>,
         /// Changes that would have kept the stack up; null if the stack stands or if no change was searched for.
         pub remedy: Option<Remedy>,
-        /// Numbers of variants and barrels that fall in each direction; null where no variants were run.
+        /// Numbers of variants by the direction in which the first body leaves its seat, and numbers of fallen barrels
+        /// by the direction of their displacement; null if no variants were run.
         pub directions: Option<Directions>,
         /// Outcome of the run.
         pub outcome: OutcomeInSpace,
@@ -58,18 +59,19 @@ described! {
         pub verification: Option<Verification>,
     }
 
-    /// Numbers of variants and barrels that fall in each direction.
+    /// Numbers of variants by the direction in which the first body leaves its seat, and numbers of fallen barrels by
+    /// the direction of their displacement.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Directions {
-        /// Number of variants in which the first body to leave its seat leaves it to the right (positive x).
+        /// Number of variants in which the first body that leaves its seat moves to the right (positive x).
         pub first_right: u32,
-        /// Number of variants in which the first body to leave its seat leaves it to the left (negative x).
+        /// Number of variants in which the first body that leaves its seat moves to the left (negative x).
         pub first_left: u32,
-        /// Number of variants in which the first body to leave its seat leaves it along the barrels, away from the
-        /// viewer (positive y).
+        /// Number of variants in which the first body that leaves its seat moves in the direction of the barrel axes,
+        /// away from the viewer (positive y).
         pub first_away: u32,
-        /// Number of variants in which the first body to leave its seat leaves it along the barrels, toward the near
-        /// side (negative y).
+        /// Number of variants in which the first body that leaves its seat moves in the direction of the barrel axes,
+        /// toward the viewer (negative y).
         pub first_near: u32,
         /// Number of fallen barrels, in all variants, whose displacement from rest is mainly to the right.
         pub debris_right: u32,

@@ -43,9 +43,9 @@ described! {
         pub height: Option<Tried>,
         /// The loosest straps that suffice; null if no tried straps do.
         pub straps: Option<Tried>,
-        /// Share of the draws of the uncertain constants in which fewer stacks fail with the sufficient height than
-        /// with the sufficient straps; a draw with equal shares counts as one half. Null unless a height and straps
-        /// both suffice, each with a range that is not null.
+        /// Share of the draws of the uncertain constants in which fewer stacks fail with the number of levels in
+        /// `height` than with the straps in `straps`; a draw with equal shares counts as one half. Null if `height` or
+        /// `straps` is null, or if the `range` of either is null.
         pub height_before_straps: Option<f64> as "1",
         /// Number of changes that may be tried, each in every plane; the intervals hold
         /// simultaneously for all these changes.
@@ -85,13 +85,14 @@ described! {
         /// correction); the intervals of all changes and planes of the search hold simultaneously
         /// with 95 % confidence. Null if the share is null.
         pub interval: Option<[f64; 2]> as "1",
-        /// Range of the share of stacks that fail as the uncertain constants of the seats vary, in the plane in which
-        /// more stacks fail: it contains 95 % of the shares if these constants are drawn from their distributions,
-        /// sampling error included. Null if the share is null, and in all cases in which the range of the unchanged
-        /// stack would be null.
+        /// Range of the share of stacks that fail, in the plane in which more stacks fail: it contains 95 % of the
+        /// shares if the uncertain constants of the seats are drawn from their distributions, sampling error included.
+        /// Null if `share` is null, if there are fewer than 16 variants, if one of them has no verdict, or if they
+        /// differ only in positions and masses.
         pub range: Option<[f64; 2]> as "1",
-        /// Share of the draws of the uncertain constants in which fewer stacks fail after the change than without it; a
-        /// draw with equal shares counts as one half. Each draw applies to all changes. Null if a range is unknown.
+        /// Share of the draws of the uncertain constants in which fewer stacks fail with the change than without it; a
+        /// draw with equal shares counts as one half. The same draws are used for all changes. Null if `range` is null,
+        /// or if the unchanged stack has no such range.
         pub better_than_as_it_is: Option<f64> as "1",
     }
 }

@@ -39,7 +39,8 @@ described! {
         /// verdict, or if they differ only in positions and masses.
         pub range: Option<[f64; 2]> as "1",
         /// Share of stacks that collapse if all uncertain constants are at their medians; null if `range` is null. The
-        /// medians are the stated values, except for a static friction that is drawn.
+        /// medians are the stated values, except that of a static coefficient of friction that is drawn at random: it
+        /// lies above the stated value.
         pub share_as_stated: Option<f64> as "1",
         /// The uncertain constants of the seats, the most influential first; empty if `range` is
         /// null.
@@ -73,8 +74,8 @@ described! {
         /// Number of variants without a verdict, because their model could not be built or their
         /// computation failed.
         pub broken: u32,
-        /// Reason why a variant falls before it is shaken or has no verdict, for the first such
-        /// variant.
+        /// Reason why a variant has no verdict or falls before it is shaken, for the first such variant; null if there
+        /// is none.
         pub reason: Option<String>,
         /// Outcome of the nominal case.
         pub stated: &'static str ["stable", "collapse", "not-judged", "invalid"],

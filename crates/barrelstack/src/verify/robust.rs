@@ -6,7 +6,7 @@ use super::Repeat;
 use crate::summary::OutcomeSummary;
 
 described! {
-    /// Properties of the run that all repeats share; all false if there are no repeats.
+    /// Agreement between the run and its repeats; `kind`, `mode` and `first` are false if there are no repeats.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Robust {
         /// True if all repeats agree with the run on whether the stack stands or collapses.

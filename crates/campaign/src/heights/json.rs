@@ -92,8 +92,8 @@ described! {
         pub range: Option<[f64; 2]> as "1" = at.2.map(|effect| effect.range),
         /// Share of stacks that collapse if all uncertain constants have their stated values; null if `range` is null.
         pub share_as_stated: Option<f64> as "1" = at.2.map(|effect| effect.as_stated),
-        /// The uncertain constant with the largest effect on the share of stacks that collapse; null if no constant is
-        /// decisive, that is, changes this share significantly and by at least 20 percentage points.
+        /// The uncertain constant with the largest effect on the share of stacks that collapse; null if no constant
+        /// changes this share both significantly and by at least 20 percentage points.
         pub decides: Option<Unknown> = at.2.and_then(Fitted::decisive).cloned(),
     }
 

@@ -49,7 +49,7 @@ described! {
         pub name: String = one.protection.name.clone(),
         /// Kind of the protection.
         pub kind: &'static str ["as-it-is", "height", "rack", "device", "pair"] = one.protection.kind.name(),
-        /// Changes of the scenario, as overrides.
+        /// Changes to the scenario, as overrides.
         pub changes: Vec<String> = one.protection.changes.clone(),
         /// Lower and upper cost for one stack.
         pub cost: [f64; 2] as "US$" = one.protection.cost,
@@ -75,10 +75,10 @@ described! {
         /// Number of barrels that burst under the central assumption, per event or per year, according to
         /// `per`.
         pub barrels_burst: Interval = Interval::of(&one.burst),
-        /// Reduction of fallen barrels compared with the unprotected stack, under the same motions; null for
-        /// the unprotected stack.
+        /// Reduction in the number of fallen barrels compared with the unprotected stack, under the same motions; null
+        /// for the unprotected stack.
         pub barrels_saved: Option<Interval> = one.saved.as_ref().map(Interval::of),
-        /// Reduction of fallen barrels as in `barrels_saved`, with an interval that holds for all tried protections
+        /// The same reduction as in `barrels_saved`, with an interval that holds for all tried protections
         /// simultaneously (Bonferroni). This interval determines `best`. Null for the unprotected stack.
         pub barrels_saved_together: Option<Interval> = one.saved_together.as_ref().map(Interval::of),
         /// Number of barrels that fall in the worst state of maintenance; null if no such state was tried.

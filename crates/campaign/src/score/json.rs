@@ -22,8 +22,8 @@ described! {
         /// (friction, stiffness, damping) and the sampling error; rounded outward. Without uncertain constants it is
         /// the 95 % interval for the sampling error alone. Null if a run has no verdict, or if there are too few runs.
         pub range: Option<[u32; 2]> as "cm/s" = sheet.range(),
-        /// The uncertain constant with the largest effect on the share of stacks that collapse, in the weakest state
-        /// and direction at the velocity of the score; null if no constant is decisive, that is, changes this share
+        /// The uncertain constant with the largest effect on the share of stacks that collapse at the velocity of the
+        /// score, in the state and direction with the smallest velocity. Null if no constant changes this share both
         /// significantly and by at least 20 percentage points.
         pub decides: Option<Unknown> = sheet.decisive().cloned(),
         /// Number of levels of the stack.
@@ -34,7 +34,7 @@ described! {
         pub motions: usize = sheet.protocol.count(),
         /// Probability of collapse that defines the score.
         pub chance: f64 as "1" = sheet.protocol.chance,
-        /// Result of every state in every direction.
+        /// One result for each combination of a state of the stack and a direction of shaking.
         pub states: Vec<StateRow> = sheet.rows.iter().map(|row| StateRow::of(&(row, sheet))).collect(),
     }
 
@@ -42,7 +42,7 @@ described! {
     pub struct StateRow of row: &(&Scored, &Sheet) {
         /// Name of the state.
         pub state: String = row.0.state.name.clone(),
-        /// Changes of the scenario in this state, as overrides.
+        /// Changes to the scenario in this state, as overrides.
         pub changes: Vec<String> = row.0.state.changes.clone(),
         /// Direction of shaking: across the barrels, along them, or three-dimensional with all components of the
         /// motions.

@@ -140,7 +140,7 @@ described! {
         pub after_collapse: Option<f64> as "s",
         /// Names of the motions that are longer than the duration.
         pub cut: Vec<String>,
-        /// Longest part (s) of a motion that is not run because of the duration.
+        /// Longest time (s) by which one of these motions outlasts the duration; 0 if there are none.
         pub longest_cut: f64 as "s",
     }
 }

@@ -181,8 +181,9 @@ table! {
         "one-at-a-time" {
             /// Probabilities of the quantiles that represent a distribution.
             quantiles = Kind::Values, Default::Value("[0.1, 0.9]");
-            /// Number of stacks for each motion. If it is above 0, factors with a distribution are drawn for
-            /// each stack, the same values are used for all changes and levels, and quantiles are not used.
+            /// Number of stacks that are drawn at random for each motion. If it is above 0, every factor with a
+            /// distribution has a random value in each stack, in place of the values at its quantiles; all changes and
+            /// levels use the same stacks.
             draws = Kind::Integer(0, 10_000), Default::Value("0");
         }
         /// Latin hypercube: the range of every factor is divided into `count` equally probable parts, and one

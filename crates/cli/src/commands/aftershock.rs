@@ -32,7 +32,7 @@ pub(crate) struct AftershockArgs {
     set: Vec<String>,
     #[command(flatten)]
     variants: VariantArgs,
-    /// Write report, results by shock and plan into this folder, which must be new or empty.
+    /// Write the report, the plan and the results of each shock to this folder, which must be new or empty.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Allow a folder that is not empty, and replace the files of an earlier run.

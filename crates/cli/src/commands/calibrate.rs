@@ -114,7 +114,7 @@ enum Pair {
 /// The pair of bodies to which the result applies.
 #[derive(Debug, clap::Args)]
 struct PairArgs {
-    /// Pair of bodies that was tested, for the lines to paste into a scenario.
+    /// Pair of bodies that was tested; the printed lines to paste into a scenario name this pair.
     #[arg(long, value_enum, default_value = "barrel-rack")]
     interface: Pair,
 }

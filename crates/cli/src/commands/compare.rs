@@ -52,8 +52,8 @@ pub(crate) struct CompareArgs {
     /// cellars as stated.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
     pub(super) variants: Option<u32>,
-    /// Name of a run, in place of a description of its differences; to name several runs, repeat this option in their
-    /// order.
+    /// Name of the first run, in place of a description of its differences; repeat this option for the second run, and
+    /// so on.
     #[arg(long, value_name = "WORDS")]
     pub(super) label: Vec<String>,
     /// Folder for report.html, report.md and figures/, for cellars also layouts.csv and
@@ -97,7 +97,8 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         (None, _) => super::layouts::compare(args, &requested, cellars),
         (Some(_), None) if args.usual => {
             bail!(
-                "--usual adds changes to the layout of a cellar; leave --usual out, or give a cellar"
+                "--usual adds runs of a cellar with changed layouts, but no cellar is given; leave --usual out, or \
+                 give a cellar"
             )
         }
         (Some(_), None) if args.tables.need(false).is_err() => {

@@ -70,7 +70,8 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     match load_any(args)? {
         Loaded::Scenario(scenario) => Ok(*scenario),
         Loaded::Cellar(_) => anyhow::bail!(
-            "{}: this is a cellar, which `barrelstack check`, `run`, `aftershock` and `compare` read; give the scenario of one stack",
+            "{}: this is a cellar, which only `barrelstack check`, `run`, `aftershock` and `compare` accept; give the \
+             scenario of one stack",
             args.scenario
         ),
     }

@@ -34,7 +34,7 @@ pub(crate) struct RenderArgs {
     paper: PaperName,
     #[command(flatten)]
     language: LanguageArgs,
-    /// Pictures and ParaView time steps per second of the run; animations have at most 50 pictures per second.
+    /// Frames and ParaView time steps per second of simulated time; animations have at most 50 frames per second.
     #[arg(long, value_name = "HZ", default_value = "20", value_parser = rate)]
     rate: f64,
     /// Start (s) of the interval to render.
@@ -46,7 +46,7 @@ pub(crate) struct RenderArgs {
     /// Longer side of animations (pixels).
     #[arg(long, value_name = "PIXELS", default_value = "480", value_parser = clap::value_parser!(u32).range(64..=4096))]
     size: u32,
-    /// Replace the files that an earlier rendering wrote for these parts.
+    /// Replace the files that an earlier rendering of the same parts wrote.
     #[arg(long)]
     overwrite: bool,
     /// Show no progress.
@@ -74,7 +74,7 @@ typed! {
 fn rate(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(rate) if rate.is_finite() && rate > 0.0 => Ok(rate),
-        _ => Err("expected a number of pictures per second above zero, such as 20".into()),
+        _ => Err("expected a number of frames per second above zero, such as 20".into()),
     }
 }
 

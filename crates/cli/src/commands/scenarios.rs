@@ -99,7 +99,8 @@ fn filtered(reference: &str, filter: &str) -> anyhow::Result<Vec<String>> {
     }
     if lines.is_empty() {
         bail!(
-            "no field has \"{filter}\" in its name, its table or its meaning; leave the filter out to list all fields"
+            "no field has \"{filter}\" in its name, its table or its description; leave the filter out to list all \
+             fields"
         );
     }
     Ok(lines)

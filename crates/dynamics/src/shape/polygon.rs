@@ -69,7 +69,7 @@ pub enum PolygonError {
     },
     /// The corners go around the polygon more than once.
     #[error(
-        "the corners go around the polygon more than once, since a full turn is complete at corner {corner}: \
+        "the corners go around the polygon more than once: up to corner {corner}, they turn by more than 360°; \
          list each corner of a convex polygon once"
     )]
     Overlapping {

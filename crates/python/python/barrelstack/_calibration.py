@@ -97,7 +97,7 @@ class Calibration(Page):
         nodes
             Number of contact nodes that share the force; the fitted k is the stiffness of one node.
         interface
-            The pair of bodies that was tested, for the lines to paste into a scenario.
+            The pair of bodies that was tested; the lines to paste into a scenario name this pair.
 
         Returns
         -------

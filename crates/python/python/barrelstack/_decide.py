@@ -28,7 +28,7 @@ class Difference(NamedTuple):
     ['1 s', '0.5 s']
     """
 
-    #: Path of the input, as in :meth:`Scenario.set`.
+    #: Path of the input in the scenario, such as ``stack.levels``; see :meth:`Scenario.set`.
     path: str
     #: Value in each run; None if a run has no such field.
     values: list[str | None]

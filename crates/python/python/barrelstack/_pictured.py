@@ -163,7 +163,7 @@ class Pictured(Reported[NativeRun]):
         size = len(film._repr_html_().encode())
         if size > LARGE:
             message = (
-                f"the animation adds {size / 1e6:.1f} MB to a notebook; for less, show fewer pictures per second "
+                f"the animation adds {size / 1e6:.1f} MB to a notebook; for less, show fewer frames per second "
                 f"(rate={rate / 2:g}) or a part of the run (between=(start, end))"
             )
             warnings.warn(message, BarrelstackWarning, stacklevel=2)

@@ -261,8 +261,8 @@ class ElementFields(TypedDict, total=False):
     stiffness: Quantity
     """Force per elongation."""
     strength: Quantity
-    """Force above which the strap breaks permanently; if not given, the strap never breaks. Or: Force above which
-    the guide breaks permanently; if not given, the guide never breaks.
+    """Force above which the strap breaks; if not given, the strap never breaks. Or: Force above which the guide
+    breaks; if not given, the guide never breaks.
     """
     to: list[Quantity]
     """Attachment point on the second body, relative to the reference point of its shape. Default: ["0 m", "0 m"]."""
@@ -445,9 +445,9 @@ class ImperfectionsFields(TypedDict, total=False):
     no variant. Default: false.
     """
     until: Literal["rest", "verdict", "duration"]
-    """Criterion that ends a variant if `run.until` is "rest". With "verdict", a variant ends 2 s after its first
-    loss of a seat, or when it is at rest on ground that stays below 0.02 g. With "rest", a variant ends when
-    all bodies have come to rest. Default: verdict.
+    """Criterion that ends the variants; used only if `run.until` is "rest". The value "verdict" ends a variant 2 s
+    after its first loss of a seat, or when it is at rest on ground that stays below 0.02 g. The value "rest"
+    ends a variant when all bodies have come to rest. Default: verdict.
     """
     variants: int
     """Number of variants of the stack that are run in each plane, in addition to the stack as stated; 0 to run
@@ -566,7 +566,7 @@ class LidFields(TypedDict, total=False):
     stiffness: Quantity
     """Stiffness of one lid (force per displacement). The default is an assumption. Default: 500 kN/m."""
     strength: Quantity
-    """Force above which a lid breaks permanently; if not given, lids never break."""
+    """Force above which a lid breaks; if not given, lids never break."""
 
 
 class MotionFields(TypedDict, total=False):
@@ -629,8 +629,9 @@ class NodesFields(TypedDict, total=False):
     list: list["NodeFields"]
     """Nodes at chosen points."""
     rule: Literal["corners", "rolling", "exact"]
-    """Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. If
-    both bodies have exact contact, their convex outlines touch each other at their deepest points.
+    """Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. With
+    exact contact, every corner and arc of the convex outline touches the other body with its deepest point,
+    wherever this point lies. If both bodies have exact contact, the corners and arcs of both are tested.
     """
     spacing: Quantity
     """Largest distance between nodes along the boundary."""
@@ -977,8 +978,8 @@ class ShapeFields(TypedDict, total=False):
 
 
 class ShockFields(TypedDict, total=False):
-    """A shock of a sequence: one of `record`, `bundled`, `sine`, `pulse` and `none`, with all other fields of
-    `[motion]`.
+    """A shock of a sequence. Its motion is one of `record`, `bundled`, `sine`, `pulse` and `none`; every other
+    field of `[motion]` can be given as well.
     """
 
     bundled: Literal["napa-college-2014"]
@@ -1141,7 +1142,7 @@ class StrapFields(TypedDict, total=False):
     its length. Default: 100 kN/m.
     """
     strength: Quantity
-    """Force above which a strap tears permanently; if not given, straps never tear."""
+    """Force above which a strap tears; if not given, straps never tear."""
     ties: Literal["barrels-to-racks", "levels-together"]
     """Bodies that the straps tie together: every barrel to its rack, or in addition every rack to the rack below.
     Default: barrels-to-racks.
@@ -1162,8 +1163,8 @@ class TieFields(TypedDict, total=False):
     levels: int
     """Number of levels with ties, counted from the top; 0 for none. Default: 0."""
     side: Literal["left", "right", "both"]
-    """Side of the stack on which there is a wall or a ceiling. If the stack is mirrored, the wall or ceiling is on
-    the other side. Default: both.
+    """Side of the stack on which its racks are tied to a wall or a ceiling. If the stack is mirrored, the ties are
+    on the other side. Default: both.
     """
     slack: Quantity
     """Slack of one tie on the stack at rest: the elongation at which the tie begins to pull. Default: 1 cm."""
@@ -1173,7 +1174,7 @@ class TieFields(TypedDict, total=False):
     kN/m.
     """
     strength: Quantity
-    """Force above which a tie tears permanently; if not given, ties never tear."""
+    """Force above which a tie tears; if not given, ties never tear."""
     to: Literal["wall", "ceiling", "neighbors"]
     """Structure to which the ties are anchored; walls and ceilings move with the ground. Default: wall."""
     yields_at: Quantity
@@ -1289,7 +1290,7 @@ class ViscousInSpaceFields(TypedDict, total=False):
 
 
 class WalkingStopFields(TypedDict, total=False):
-    """Stops between racks and the barrels below: lips that a rack touches after it has walked through a gap."""
+    """Stops between racks and the barrels below: lips that a rack meets once it has moved by the distance `gap`."""
 
     damping: Quantity
     """Damping of the lips at one barrel (force per speed), which acts on approach only. The default is an
@@ -1314,4 +1315,4 @@ class WalkingStopFields(TypedDict, total=False):
     plate. Default: 1 MN/m.
     """
     strength: Quantity
-    """Force above which the lips at one barrel break permanently; if not given, lips never break."""
+    """Force above which the lips at one barrel break; if not given, lips never break."""

@@ -39,7 +39,7 @@ pub enum GroundError {
     },
     /// The unit that the scenario states for a file is not a supported unit of acceleration.
     #[error(
-        "motion.unit = {unit} m/s² is not a unit in which accelerations are read: use 1 g, 0.1 g, 1 m/s^2, \
+        "motion.unit = {unit} m/s² is not a supported unit of acceleration: use 1 g, 0.1 g, 1 m/s^2, \
          1 cm/s^2, 1 mm/s^2, 1 ft/s^2 or 1 in/s^2"
     )]
     Unit {

@@ -87,9 +87,9 @@ table! {
         "ricker" {}
         /// Acceleration in the form of half a sine wave.
         "half-sine" {}
-        /// Acceleration in the form of one sine wave.
+        /// Acceleration in the form of one full sine wave.
         "one-sine" {}
-        /// Acceleration in the form of one cosine wave.
+        /// Acceleration in the form of one full cycle of a cosine.
         "one-cosine" {}
         /// Constant acceleration.
         "rectangular" {}
@@ -149,7 +149,8 @@ table! {
 pub(super) const SOURCES: &[&str] = &["record", "bundled", "sine", "pulse", "none"];
 
 table! {
-    /// A shock of a sequence: one of `record`, `bundled`, `sine`, `pulse` and `none`, with all other fields of `[motion]`.
+    /// A shock of a sequence. Its motion is one of `record`, `bundled`, `sine`, `pulse` and `none`; every other field
+    /// of `[motion]` can be given as well.
     pub static SHOCK = "shock";
     /// File of a recorded motion, relative to the scenario file.
     record = Kind::Text, Default::Nothing;

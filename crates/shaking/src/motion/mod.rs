@@ -200,15 +200,15 @@ pub enum Scale {
 }
 
 named! {
-    /// Components from which the measure of a scaling is computed.
+    /// For a motion that is scaled to an intensity measure: the components from which this measure is computed.
     pub enum MeasuredOn {
         /// The horizontal component that drives the stack.
         Component = "component",
-        /// Both horizontals of the record: the median over all directions.
+        /// Median of the measure over all horizontal directions, from both horizontal components of the record.
         RotD50 = "rotd50",
-        /// Both horizontals of the record: the maximum over all directions.
+        /// Maximum of the measure over all horizontal directions, from both horizontal components of the record.
         RotD100 = "rotd100",
-        /// Both horizontals of the record: their geometric mean.
+        /// Geometric mean of the measures of both horizontal components of the record.
         GeometricMean = "geomean",
     }
 }

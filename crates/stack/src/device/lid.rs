@@ -49,7 +49,7 @@ section! {
     /// Damping of one lid (force per speed), which acts on approach only. The default is an assumption.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"2 kN s/m\"");
-    /// Force above which a lid breaks permanently; if not given, lids never break.
+    /// Force above which a lid breaks; if not given, lids never break.
     strength: Option<f64> =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }

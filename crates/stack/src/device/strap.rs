@@ -96,7 +96,7 @@ section! {
     /// Force in one strap when it is tightened; the stack settles under this force, so that part of the force is lost.
     pretension: f64 =
         Kind::Quantity(&[Dimension::FORCE], Range::NOT_NEGATIVE), Default::Value("\"0 N\"");
-    /// Force above which a strap tears permanently; if not given, straps never tear.
+    /// Force above which a strap tears; if not given, straps never tear.
     strength: Option<f64> =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }

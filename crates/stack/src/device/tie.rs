@@ -77,8 +77,8 @@ section! {
     levels: u32 = LEVELS, Default::Value("0");
     /// Structure to which the ties are anchored; walls and ceilings move with the ground.
     to: Anchor = Kind::Choice(names::<Anchor>), Default::Value("\"wall\"");
-    /// Side of the stack on which there is a wall or a ceiling. If the stack is mirrored, the wall or ceiling is on the
-    /// other side.
+    /// Side of the stack on which its racks are tied to a wall or a ceiling. If the stack is mirrored, the ties are on
+    /// the other side.
     side: Side = Kind::Choice(names::<Side>), Default::Value("\"both\"");
     /// Horizontal distance from the end of a rack to the wall, or vertical distance to the ceiling; the default is the
     /// clearance of 18 inches that one winery keeps from its walls (Press Democrat 2014).
@@ -97,7 +97,7 @@ section! {
     /// Force at which a tie yields and becomes permanently longer; if not given, ties never yield.
     yields_at: Option<f64> =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
-    /// Force above which a tie tears permanently; if not given, ties never tear.
+    /// Force above which a tie tears; if not given, ties never tear.
     strength: Option<f64> =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }

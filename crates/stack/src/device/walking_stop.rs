@@ -48,9 +48,10 @@ pub(super) static WORDS: Words = Words {
 named! {
     /// Direction in which stops hold racks.
     pub enum Holds {
-        /// Along the barrels: a hook over the hoop or the end of a barrel.
+        /// Along the barrels: a hook of the rack over the hoop or the end of the barrel below.
         Along = "along",
-        /// Across the barrels: a saddle on the curved side of a barrel, without friction.
+        /// Across the barrels: a saddle of the rack that bears, without friction, against the curved side of the barrel
+        /// below.
         Across = "across",
         /// Both along and across the barrels.
         Both = "both",
@@ -61,7 +62,7 @@ section! {
     /// Stops between racks and the barrels below.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct WalkingStops;
-    /// Stops between racks and the barrels below: lips that a rack touches after it has walked through a gap.
+    /// Stops between racks and the barrels below: lips that a rack meets once it has moved by the distance `gap`.
     pub static SECTION = "walking_stop";
     /// Number of levels with stops under their racks, counted from the top; 12 for all levels, 0 for none. The bottom
     /// rack never has stops.
@@ -80,7 +81,7 @@ section! {
     /// assumption.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"2 kN s/m\"");
-    /// Force above which the lips at one barrel break permanently; if not given, lips never break.
+    /// Force above which the lips at one barrel break; if not given, lips never break.
     strength: Option<f64> =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }

@@ -48,10 +48,11 @@ choices! {
         length: Option<f64> = LENGTH, AT_START;
         /// Force at which the strap yields and becomes permanently longer; if not given, the strap never yields.
         yields_at: Option<f64> = FORCE, Default::Nothing;
-        /// Force above which the strap breaks permanently; if not given, the strap never breaks.
+        /// Force above which the strap breaks; if not given, the strap never breaks.
         strength: Option<f64> = FORCE, Default::Nothing;
     }
-    /// A rod, which keeps a distance by pulling and pushing, such as the rod of a pendulum.
+    /// A rod, which acts in tension and in compression between its two attachment points, such as the rod of a
+    /// pendulum.
     Rod = "rod" {
         /// Distance between the attachment points at which the element carries no force.
         length: Option<f64> = LENGTH, AT_START;
@@ -71,7 +72,7 @@ choices! {
         stop_stiffness: f64 = STIFFNESS, Default::Value("\"0 N/m\"");
         /// Damping of the stops, which acts on approach only.
         stop_damping: f64 = DAMPING, Default::Value("\"0 N s/m\"");
-        /// Force above which the guide breaks permanently; if not given, the guide never breaks.
+        /// Force above which the guide breaks; if not given, the guide never breaks.
         strength: Option<f64> = FORCE, Default::Nothing;
         /// Distance from the axis beyond which the guide disengages permanently; if not given, the guide never
         /// disengages.

@@ -22,7 +22,8 @@ pub enum Nodes {
     Count(u32),
     /// One node, at the point of a circle that is deepest in the target.
     Rolling,
-    /// No nodes: convex outlines touch each other at their deepest points, wherever these lie.
+    /// No nodes: every corner and arc of a convex outline touches the other body with its deepest point, wherever this
+    /// point lies.
     Exact,
     /// Nodes at chosen points.
     At(Vec<ChosenNode>),
@@ -55,8 +56,9 @@ const MOST_NODES: f64 = 20_000.0;
 table! {
     /// Contact nodes of a boundary, given by one of the fields.
     pub static NODES = "nodes";
-    /// Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. If both
-    /// bodies have exact contact, their convex outlines touch each other at their deepest points.
+    /// Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. With
+    /// exact contact, every corner and arc of the convex outline touches the other body with its deepest point,
+    /// wherever this point lies. If both bodies have exact contact, the corners and arcs of both are tested.
     rule = Kind::Choice(names::<NodeRule>), Default::Nothing;
     /// Largest distance between nodes along the boundary.
     spacing = Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e3 }),

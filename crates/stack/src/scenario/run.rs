@@ -38,7 +38,8 @@ named! {
     pub enum Until {
         /// The motion is over, and all bodies have come to rest.
         Rest = "rest",
-        /// The verdict is known: 2 s after the first loss of a seat, or once a standing stack has come to rest on ground that stays calm.
+        /// The verdict is known: 2 s after the first loss of a seat, or once a standing stack has come to rest and the
+        /// remaining ground motion is too weak to move it.
         Verdict = "verdict",
         /// The stated duration is over.
         Duration = "duration",

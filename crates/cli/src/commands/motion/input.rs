@@ -87,12 +87,12 @@ pub(super) struct Choice {
 pub(super) enum Chain {
     /// Use the numbers as read.
     None,
-    /// Process as in a scenario: compact for raw records, no processing for all others.
+    /// Process as in a scenario: the chain `compact` for raw records, and no processing for all others.
     Default,
     /// Remove the pre-event mean, taper 2 % of each end, apply a zero-phase high-pass filter at 0.1 Hz, remove the pads
     /// of the filter, and bring the final velocity and displacement to zero.
     Compact,
-    /// Like compact, but keep the pads of the filter: quiet time before and after the shaking.
+    /// Like `compact`, but keep the pads of the filter: quiet time before and after the shaking.
     Padded,
 }
 

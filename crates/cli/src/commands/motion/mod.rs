@@ -58,7 +58,7 @@ enum MotionCommand {
     /// Plot acceleration, velocity, displacement, Arias intensity and spectra as SVG, with CSV
     /// files.
     Plot(plot::PlotArgs),
-    /// Write a record as AT2, CSV, NPZ or the program's own text.
+    /// Write a record as AT2, CSV or NPZ, or in the program's own text format.
     Convert(change::ConvertArgs),
     /// Remove the mean, taper, filter, and bring the final velocity and displacement to zero; every
     /// step is printed.

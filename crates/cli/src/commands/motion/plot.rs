@@ -174,7 +174,7 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
             [] => Kind::Acceleration,
             [kind] => *kind,
             _ => bail!(
-                "{} can have one figure only: select one with --figure, or give a folder",
+                "{} can hold only one figure: select one with --figure, or give a folder",
                 args.output.display()
             ),
         };

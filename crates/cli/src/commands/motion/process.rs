@@ -209,7 +209,7 @@ fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
     after.channels.clear();
     for (channel, corners) in before.channels.iter().zip(before.noise_corners(&criterion)) {
         let corners = corners.map_err(|error| {
-            anyhow!("--corners auto: {error} (--high-pass and --low-pass in place of --corners)")
+            anyhow!("--corners auto: {error} with --high-pass and --low-pass in place of --corners")
         })?;
         let chain = Processing {
             high_pass: Some(corners.high_pass),
@@ -262,7 +262,9 @@ pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
 fn folders(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
     let out = args.output.output.as_path();
     if args.figure.is_some() {
-        bail!("--figure applies to a single record; plot the records of a folder with motion plot");
+        bail!(
+            "--figure applies to a single record; to plot the records of a folder, use `barrelstack motion plot`"
+        );
     }
     let batch = Batch::new(&args.input, out, &args.folder, args.settings());
     let batch = Batch { ending: Some(word(args.form)), ..batch };

@@ -49,15 +49,15 @@ struct Seed {
 enum Kind {
     /// Harmonic displacement with ramps at both ends.
     Sine(Made<Harmonic>),
-    /// Half a sine wave of acceleration; leaves a residual velocity.
+    /// Acceleration in the form of half a sine wave; leaves a residual velocity.
     HalfSine(Made<Size>),
-    /// One sine wave of acceleration; leaves a residual displacement.
+    /// Acceleration in the form of one full sine wave; leaves a residual displacement.
     OneSine(Made<Size>),
-    /// One cosine wave of acceleration.
+    /// Acceleration in the form of one full cycle of a cosine.
     OneCosine(Made<Size>),
-    /// Ricker wavelet of acceleration; ends at rest at its starting point.
+    /// Acceleration in the form of a Ricker wavelet; ends at rest at its starting point.
     Ricker(Made<Size>),
-    /// Gabor wavelet of velocity.
+    /// Velocity in the form of a Gabor wavelet.
     Gabor(Made<Wavelet>),
     /// Cycloidal pulse of type A: a permanent forward displacement.
     CycloidA(Made<Size>),
