@@ -282,7 +282,7 @@ impl CellarComparison {
     }
 }
 
-/// Returns the inputs that differ between cellars, in the order in which a cellar file lists them.
+/// Returns the inputs that differ between cellars, in the order of [`Cellar::settings`].
 fn differences<'a>(cellars: impl Iterator<Item = &'a Cellar>) -> Vec<Difference> {
     differing(&cellars.map(Cellar::settings).collect::<Vec<_>>())
 }
