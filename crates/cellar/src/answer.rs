@@ -20,7 +20,8 @@ use crate::words;
 pub struct Answer {
     /// The cellar with its plan.
     pub prepared: Prepared,
-    /// Results of all variants in order, from variant 0, the room as stated in its file; interrupted runs are left out.
+    /// Results of the variants, in the order of their numbers. Variant 0 is the room as stated in its file. Interrupted
+    /// runs are left out.
     pub cases: Vec<Case>,
     /// Result of the run that reports show in detail.
     pub case: Case,

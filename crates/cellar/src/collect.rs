@@ -106,7 +106,8 @@ pub(crate) fn result(
     run
 }
 
-/// Returns the bodies of a stack at the end of the run; `member` is the index of the stack in its island.
+/// Returns the result for each body of a stack at the end of the run, except the ground. `member` is the index of the
+/// stack in its island.
 fn bodies_of(of: &StackOf<'_>, stack: usize, island: &Island, member: usize) -> Vec<BodyEnd> {
     let (poses, _) = island.own(member);
     let fates = island.live.watches[member].fates.clone().at_end(&poses);

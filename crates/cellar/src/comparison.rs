@@ -238,8 +238,8 @@ pub fn labels(layouts: &[(String, Cellar)]) -> Vec<String> {
     compare::labels_by(&names, &differences)
 }
 
-/// Compares layouts; `unfinished` holds the names of the layouts that were stopped, and `left_out` the changes that
-/// were not run.
+/// Compares layouts. `unfinished` holds the names of the layouts whose run was stopped early or never started, and
+/// `left_out` the changes that were not run.
 pub fn compared(
     layouts: &[Layout],
     unfinished: Vec<String>,
@@ -283,7 +283,7 @@ impl CellarComparison {
     }
 }
 
-/// Returns the inputs that differ between cellars, in the order of the file.
+/// Returns the inputs that differ between cellars, in the order of [`Cellar::settings`].
 fn differences<'a>(cellars: impl Iterator<Item = &'a Cellar>) -> Vec<Difference> {
     differing(&cellars.map(Cellar::settings).collect::<Vec<_>>())
 }
@@ -356,7 +356,8 @@ fn answer(layout: &Layout) -> LayoutAnswer {
 }
 
 impl Estimate {
-    /// Returns the mean of values between 0 and `most`, with its interval.
+    /// Returns the mean of values that lie between 0 and `most`, with its confidence interval. There is no interval if
+    /// there are fewer than two values.
     fn of(values: impl Iterator<Item = f64>, most: f64) -> Self {
         let most = most.max(f64::MIN_POSITIVE);
         let shares: Vec<(f64, f64)> = values.map(|value| (value / most, 1.0)).collect();

@@ -96,7 +96,8 @@ pub(crate) struct Live {
     /// Lengths of the island's logs in this state. When the island returns to this state, its logs are cut to these
     /// lengths.
     kept: Vec<usize>,
-    /// For every body, the largest distance (m) from its pose at the start of the window.
+    /// For every body, an upper bound (m) on the largest displacement of any of its points, relative to the ground,
+    /// since the start of the window.
     pub(crate) travels: Vec<f64>,
     /// The body that stopped the last advance, since it could have exceeded the distance that [`Island::tubes`] allows
     /// in the next step; `None` if the advance was not stopped by a body.
@@ -156,7 +157,7 @@ pub(crate) struct Island {
     pub(crate) fixed: Fixed,
     pub(crate) live: Live,
     pub(crate) logs: Logs,
-    /// Energy balance, up to the merge, of the islands that were merged into this one.
+    /// Sum of the energy balances of the islands that were merged into this one, up to the merge.
     pub(crate) energy_before: EnergySummary,
     pub(crate) work: Work,
     /// Time (s) between recorded frames; `None` if no frames are recorded.
@@ -242,7 +243,7 @@ impl Island {
         Pose { position: position - poses[Stack::GROUND].position, orientation }
     }
 
-    /// Returns an upper bound of the speed (m/s) of any point of a body, relative to the ground.
+    /// Returns an upper bound on the speed (m/s) of any point of a body, relative to the ground.
     pub(crate) fn speed(&self, world: &World<'_>, body: BodyId) -> f64 {
         let Owner::Stack((stack, own)) = self.fixed.owners[body] else { return 0.0 };
         let twists = &self.live.running.state.twists;
@@ -315,7 +316,7 @@ impl Island {
         }
     }
 
-    /// Carries bodies at rest along with the ground to a later time (s).
+    /// Sets a later time (s) without time steps: all bodies keep their poses and velocities relative to the ground.
     fn wait_until(&mut self, time: f64) {
         let state = &mut self.live.running.state;
         if time <= state.time {

@@ -23,7 +23,7 @@ const SCHEMA: &str = "cellar-variant/1";
 #[derive(Serialize, Deserialize)]
 struct File<C> {
     schema: String,
-    /// Version of the program that wrote the file; no other version may continue its work.
+    /// Version of the program that wrote the file. Other versions refuse to read the file.
     version: String,
     cellar_hash: String,
     case: C,

@@ -265,7 +265,8 @@ impl Plan {
 }
 
 impl PlanSummary {
-    /// Describes the plan and its numbers in sentences.
+    /// Describes the plan in sentences: the contents of the room, the smallest distances, the aisles and the paths to
+    /// doors.
     pub fn sentences(&self) -> Vec<String> {
         let mut all = vec![format!(
             "{} in {}: {} barrels, {} of wine, {} m² of floor for each barrel.",

@@ -391,7 +391,7 @@ fn obstacles(summary: &CellarSummary) -> Table {
 }
 
 impl Answer {
-    /// Returns the output files by name; the report is in the given language.
+    /// Returns the name and the contents of each output file; the report is in the given language.
     ///
     /// # Errors
     /// If the summary cannot be written as JSON.

@@ -34,7 +34,7 @@ pub struct Placed {
 /// A shift of a body, or of a whole stack, before a run. The bodies start at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
-    /// Index of the body in the order of the stack, without the ground; `None` for all bodies of the stack.
+    /// Index of the body among the bodies of the stack, not counting the ground; `None` for all bodies of the stack.
     pub body: Option<usize>,
     /// Displacement (m) along the axes of the stack.
     pub by: [f64; 3],

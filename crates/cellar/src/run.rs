@@ -43,8 +43,8 @@ pub struct Advance {
 
 /// Runs a room until all stacks are at rest or the duration of the run is over.
 ///
-/// After all stacks have settled, the observer receives the progress about twice a second. It may stop the run; the
-/// results obtained until then are returned.
+/// First, every stack settles under its own weight. From then on, the observer receives the progress about twice a
+/// second. It may stop the run; the results obtained until then are returned.
 ///
 /// # Errors
 /// If a stack cannot be built or does not stand, or stacks or obstacles overlap.
@@ -119,7 +119,7 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Advances all islands until they rest; returns `true` if the observer stopped the run.
+    /// Advances all islands until the run of each has ended; returns `true` if the observer stopped the run.
     fn advance(
         &mut self,
         threads: usize,

@@ -60,7 +60,7 @@ impl From<GroundError> for CellarFailure {
 /// A cellar that is ready to run.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// The cellar, with its records in memory.
+    /// The cellar, with the records of its ground motion in memory.
     pub cellar: Cellar,
     /// The plan of the cellar.
     pub plan: Plan,
@@ -321,7 +321,7 @@ impl Prepared {
         })
     }
 
-    /// Returns the result of a run of a variant.
+    /// Returns the result of a variant, which is computed from its run.
     pub fn case(&self, variant: u32, run: &RoomRun) -> Case {
         let onsets = std::iter::once(self.onset).chain(self.later.iter().map(|later| later.onset));
         let shocks =
@@ -329,7 +329,7 @@ impl Prepared {
         Case { shocks: shocks.collect(), ..self.shock(variant, run, self.onset) }
     }
 
-    /// Returns the result of a variant, without results of its single shocks. `run` is the run of one shock, or the
+    /// Returns the result of a variant, without results of its individual shocks. `run` is the run of one shock, or the
     /// joined run of all shocks. `onset` is the time (s) in the run at which the shaking starts.
     fn shock(&self, variant: u32, run: &RoomRun, onset: f64) -> Case {
         let outlines = self.outlines(run, |body| &body.to);

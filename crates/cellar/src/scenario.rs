@@ -296,7 +296,7 @@ pub struct Standing {
 /// A cellar whose values have been checked. All quantities are in SI units.
 #[derive(Clone, Debug)]
 pub struct Cellar {
-    /// Title, in one line.
+    /// Title, a single line.
     pub title: String,
     /// The room.
     pub room: RoomSpec,
@@ -381,7 +381,7 @@ impl Cellar {
         Self::of(&self.host.with(changes, &LANGUAGE)?)
     }
 
-    /// Returns all values with their meanings, without the title, in the order of the file.
+    /// Returns all values with their meanings, without the title, in the order of [`Cellar::to_resolved_toml`].
     pub fn settings(&self) -> Vec<Setting> {
         let mut all = barrelstack_input::listing::settings(&self.write(), &CELLAR);
         all.retain(|setting| !["title", "schema", "kind"].contains(&setting.path.as_str()));
@@ -463,7 +463,8 @@ impl Cellar {
         Ok(self)
     }
 
-    /// Returns the cellar as TOML text that reads back equal, with all defaults written out and all quantities in SI.
+    /// Returns the cellar as TOML text, with all defaults written out and all quantities in SI units. The text parses
+    /// to an equal cellar.
     pub fn to_resolved_toml(&self) -> String {
         to_toml(&self.write())
     }
@@ -706,7 +707,7 @@ fn model(host: &Host, change: Option<(&'static str, Node)>) -> Result<Scenario, 
     host.stack(&OWN, &change.into_iter().chain(first).collect::<Vec<_>>())
 }
 
-/// Returns the shocks of a sequence after the first; none without a sequence.
+/// Returns the shocks of a sequence after the first; empty if the cellar has no sequence.
 fn later_shocks(host: &Host) -> Result<Vec<MotionSpec>, ScenarioError> {
     let reader = host.reader(&CELLAR)?;
     let motion = reader.section("motion")?;

@@ -66,7 +66,8 @@ impl StartSpec {
         self.file.is_none() && self.shifts.is_empty()
     }
 
-    /// Reads the file into memory. If the file cannot be read, the plan reports the error.
+    /// Reads the file into memory, if there is one. If it cannot be read, does nothing: [`starts`] then reads it
+    /// again and returns the error.
     pub(crate) fn hold(&mut self) {
         if let Some(file) = &mut self.file
             && let Ok(bytes) = file.read(LIMIT)
@@ -244,7 +245,7 @@ impl Columns {
         Ok(Self { names, poses })
     }
 
-    /// Returns the cells of a row.
+    /// Splits a line into the cells of a row, one for each column.
     fn row(&self, line: &str) -> Result<Row<'_>, String> {
         let cells = cells(line);
         if cells.len() != self.names.len() {

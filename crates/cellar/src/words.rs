@@ -369,7 +369,9 @@ fn shock_at(summary: &CellarSummary, time: f64) -> Option<String> {
     Some(format!("in the {} shock", ordinal(number?)))
 }
 
-/// Returns the tone of the verdict.
+/// Returns the kind of verdict: invalid if no run counts or the work was stopped; otherwise whether a stack falls in
+/// any run that counts. If no stack falls, the verdict is neutral in three cases: too few runs count, no stack stood
+/// before the run that is shown, or this run ended before the ground motion with stacks still moving.
 pub fn tone(summary: &CellarSummary) -> Tone {
     match summary.room.some_fall.of_variants {
         _ if summary.counted == 0 || summary.unfinished.is_some() => Tone::Invalid,

@@ -354,7 +354,8 @@ fn parameters(fit: &[Fitted]) -> anyhow::Result<Vec<Parameter>> {
     Ok(parameters)
 }
 
-/// Adds the position in the scenario, or the name of the scenario, to the error of a calibration.
+/// Adds to the error of a calibration the place where its cause is stated in the scenario; if there is no such place,
+/// the name of the scenario.
 fn placed(error: CalibrateError, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     match error {
         CalibrateError::Run(failure) => super::placed(failure, scenario, args),

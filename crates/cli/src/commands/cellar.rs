@@ -204,7 +204,8 @@ pub(super) fn selected(cellar: Cellar, args: VariantArgs) -> anyhow::Result<(Cel
     }
 }
 
-/// Adds the position in the file to an error.
+/// Adds to an error the place where its cause is stated in the cellar; if there is no such place, the name of
+/// the cellar.
 pub(super) fn placed(error: CellarFailure, cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Error {
     match error {
         CellarFailure::Plan(error) => error.into(),
