@@ -24,7 +24,7 @@
 //!   [`BooreSource`] are in km, km/s, bar and g/cm³, as in the literature. Design codes and
 //!   flatfiles keep their own units (PGA and Sa in g, distances in km).
 //! - g is 9.80665 m/s² ([`STANDARD_GRAVITY`]).
-//! - Vertical components are positive upward; a downward channel is reversed when read.
+//! - Vertical components are positive upward; the sign of a downward channel is reversed when read.
 //! - Acceleration is linear between samples, velocity quadratic, displacement cubic.
 //! - Before t = 0 the ground is at rest; after the end the acceleration is zero and the velocity is
 //!   constant.

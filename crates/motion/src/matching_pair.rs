@@ -14,8 +14,8 @@ use crate::wavelets::{FORGOTTEN, Wavelet};
 /// Maximum number of rounds in the frequency domain. These rounds approach the target and then
 /// stall.
 const FREQUENCY_ROUNDS: usize = 12;
-/// Exponent for the frequency domain. A round multiplies the Fourier amplitudes by the ratio of
-/// target to response spectrum, raised to this power.
+/// Power to which a round in the frequency domain raises the ratio of target to response spectrum. The
+/// Fourier amplitudes are multiplied by the result.
 const AMPLITUDE_STEP: f64 = 0.7;
 /// Initial and smallest fraction of the misfit that the wavelets of one round remove. Rounds
 /// without improvement reduce the fraction.
@@ -79,7 +79,7 @@ pub(crate) fn match_pair(
     Ok((best.pair, MatchedPair { misfit, missed, rounds }))
 }
 
-/// Returns the response of a pair at the given periods (m/s²), measured as `RotD50` or `RotD100`.
+/// Returns the response spectrum (m/s²) of a pair at the given periods (s), measured as `RotD50` or `RotD100`.
 pub(crate) fn spectrum(
     work: &Work<'_>,
     measure: Horizontals,

@@ -71,7 +71,7 @@ impl StatedPeak {
 pub struct Channel {
     /// Channel name in the file, such as `360` or `N28W`.
     pub name: String,
-    /// Direction of positive values; a downward channel has been reversed.
+    /// Direction of positive values. The sign of a channel that was positive downward has been reversed.
     pub direction: Direction,
     /// Time between samples (s).
     pub time_step: f64,
@@ -157,8 +157,8 @@ impl Channel {
         math::peak(&crate::sampled::running_trapezoid(self.time_step, &self.velocity()))
     }
 
-    /// Returns the reason why the channel cannot be a strong-motion record: its step, its number of
-    /// samples or its length. Returns `None` if all three are plausible.
+    /// Returns the reason why the channel cannot be a strong-motion record: its time step, its number of
+    /// samples or its duration. Returns `None` if all three are plausible.
     pub fn implausible(&self) -> Option<String> {
         let (step, count, length) = (self.time_step, self.acceleration.len(), self.duration());
         let what = if !(1e-4..=0.1).contains(&step) {
@@ -219,7 +219,7 @@ pub struct Record {
     pub stage: Stage,
     /// Channels, in file order.
     pub channels: Vec<Channel>,
-    /// Warnings of the reader.
+    /// Warnings from the reader.
     pub warnings: Vec<Warning>,
     /// `true` if the caller allowed the combination of channels of different stations or sensors;
     /// never set by readers.
@@ -235,8 +235,8 @@ impl Record {
 
     /// Creates a record from samples in memory: named channels with a common step (s) and unit.
     ///
-    /// As in files, names state directions ([`Direction::parse`]): `360`, `N28W`, `H1`, `UP`; a
-    /// downward channel is reversed. The stage is unknown, so that the numbers are used unchanged;
+    /// As in files, names state directions ([`Direction::parse`]): `360`, `N28W`, `H1`, `UP`; the
+    /// sign of a downward channel is reversed. The stage is unknown, so that the numbers are used unchanged;
     /// set [`Record::stage`] to [`Stage::Raw`] to have them processed by default.
     ///
     /// ```

@@ -101,8 +101,8 @@ fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     corners
 }
 
-/// Returns the pseudo-accelerations (m/s²) of two horizontal components over all directions, one result
-/// per period (s).
+/// Returns, for each period (s), the smallest, median and largest peak pseudo-acceleration (m/s²) of two
+/// horizontal components over all directions.
 ///
 /// The longer component is cut to the length of the shorter one.
 ///

@@ -24,7 +24,8 @@ pub struct Path {
     /// Distance from source to site (km). Geometric spreading is `1/R` up to 70 km, constant up to
     /// 130 km, then `(130/R)^0.5/70` (Atkinson and Boore 1995).
     pub distance: f64,
-    /// Quality factor at 1 Hz; `Q = q · f^exponent`, but at least a tenth of `q`.
+    /// Quality factor `q` at 1 Hz. At the frequency `f` (Hz), the quality factor is `Q = q · f^exponent`,
+    /// but at least a tenth of `q`.
     pub quality: f64,
     /// Exponent of the quality factor.
     pub quality_exponent: f64,
@@ -153,7 +154,7 @@ impl BooreSource {
     }
 
     /// Returns unprocessed accelerations (m/s²). The noise is normalized so that, over many seeds,
-    /// the mean square of its Fourier amplitudes equals that of the target at every frequency.
+    /// the mean square of its Fourier amplitude at every frequency equals the square of the target amplitude.
     ///
     /// # Errors
     /// If a parameter is out of range.
