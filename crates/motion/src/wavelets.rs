@@ -181,9 +181,10 @@ fn added(a: &[f64], wavelets: &[Wavelet], amplitudes: &[f64]) -> Vec<f64> {
     sum
 }
 
-/// Returns the motion with wavelets that bring every peak into the band around its target without
-/// raising other extrema above the target. Extrema that a solution would raise become demands, and
-/// the system is solved again.
+/// Returns the motion `a` with added wavelets that bring every peak to within the fraction `band` of its target.
+///
+/// If a solution leaves another extremum above this band, an equation for this extremum is added and the system is
+/// solved again, at most [`BOUNDING`] times in all.
 fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     let oscillators = oscillators(work, periods);
     let (mut wavelets, mut demands, mut values) = (Vec::new(), Vec::new(), Vec::new());
@@ -320,7 +321,8 @@ fn peak(extrema: &[Extremum]) -> Extremum {
     )
 }
 
-/// Adds the demands of one oscillator to the list and returns its peak response.
+/// Adds the equations for the extrema of one oscillator to `demands`, and returns its peak. Other extrema that are
+/// closer than 1.5 periods to the peak are omitted.
 fn demand(
     extrema: &[Extremum],
     index: usize,

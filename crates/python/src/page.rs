@@ -1,5 +1,5 @@
-//! Results that consist of JSON numbers and a page: comparisons, rankings, calibrations, and
-//! decisions from studies.
+//! Results that consist of numbers, serialized to JSON, and a page: comparisons, rankings, calibrations,
+//! and decisions from studies.
 
 use std::borrow::Borrow;
 use std::path::PathBuf;

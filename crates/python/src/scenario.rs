@@ -233,7 +233,8 @@ impl Scenario {
     }
 }
 
-/// Returns the selection of the variant to show; `count` is the number of variants.
+/// Selects the run to show of a scenario with `count` variants: the run with the number `variant`, or the most
+/// typical run if `variant` is `None`.
 fn run_choice(variant: Option<u32>, count: u32) -> PyResult<RunChoice> {
     match variant {
         Some(number) if number > count => Err(PyValueError::new_err(format!(
@@ -244,8 +245,8 @@ fn run_choice(variant: Option<u32>, count: u32) -> PyResult<RunChoice> {
     }
 }
 
-/// Returns the scenario with the given number of variants (by default, its own number), and this
-/// number.
+/// Returns a copy of the scenario with `variants` variants, and its number of variants. If `variants` is `None`, the
+/// number of variants remains unchanged.
 pub(crate) fn with_variants(
     of: &barrelstack::Scenario,
     variants: Option<u32>,
@@ -317,7 +318,7 @@ pub(crate) fn fields() -> Vec<(String, String, String)> {
     rows.into_iter().map(|[path, unit, meaning]| (path, unit, meaning)).collect()
 }
 
-/// Converts bytes to a Python object.
+/// Converts a byte slice to a Python `bytes` object.
 pub(crate) fn bytes<'py>(py: Python<'py>, of: &[u8]) -> Bound<'py, PyBytes> {
     PyBytes::new(py, of)
 }

@@ -687,8 +687,8 @@ impl Simulations {
         }
     }
 
-    /// Sets the state of each marked simulation to that of the same simulation in `to`, which must be a copy of these
-    /// simulations.
+    /// Sets the state of each marked simulation to that of the corresponding simulation in `to`, which must be a copy
+    /// of these simulations.
     fn reset(&self, to: &Self, marked: Vec<bool>) -> PyResult<()> {
         let all = self.all.iter().zip(&to.all).zip(marked);
         for ((own, other), _) in all.filter(|(_, marked)| *marked) {

@@ -83,9 +83,11 @@ fn harmless(text: &str) -> String {
     broken.chars().map(|c| if c.is_ascii() { c } else { '?' }).collect()
 }
 
-/// Returns the name of the component in the header. This is the channel name if [`Direction::parse`] derives the
-/// direction of the channel from it, otherwise the azimuth or `UP`. If the channel has no azimuth and is not known to
-/// be vertical, this is the channel name, cut to [`LONGEST_NAME`] characters.
+/// Returns the component name for the header.
+///
+/// This is the channel name if it has at most [`LONGEST_NAME`] characters and [`Direction::parse`] derives the
+/// direction of the channel from it; otherwise, it is the azimuth or `UP`. A channel that has no azimuth and is not
+/// known to be vertical keeps its name, cut to [`LONGEST_NAME`] characters.
 fn component(channel: &Channel) -> String {
     let name = harmless(&channel.name);
     let fits = !name.is_empty() && name.len() <= LONGEST_NAME;
