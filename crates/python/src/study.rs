@@ -86,7 +86,7 @@ impl Study {
             .collect()
     }
 
-    /// Runs the missing chunks in a folder.
+    /// Runs the chunks of the study whose shards are missing from a folder.
     fn run(
         &self,
         py: Python<'_>,

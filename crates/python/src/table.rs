@@ -332,7 +332,7 @@ struct Cases<'a> {
     grounds: Grounds,
 }
 
-/// The column that gives a record by name instead of setting a field.
+/// Name of the column that gives the record of each row by name. All other columns set fields.
 const RECORD: &str = "record";
 
 impl Cases<'_> {

@@ -143,7 +143,8 @@ impl Block {
         Self::Heading { level, text: text.into() }
     }
 
-    /// Creates content that is left out on paper, where a sentence that begins with `what` refers to the page.
+    /// Creates content that is not printed. On paper, a sentence that begins with `what` refers to
+    /// the HTML page instead.
     pub fn on_screen(what: impl Into<String>, blocks: Vec<Self>) -> Self {
         Self::OnScreen { what: what.into(), blocks }
     }
@@ -214,7 +215,7 @@ pub enum Block {
         /// The collapsed content.
         blocks: Vec<Block>,
     },
-    /// Content that is shown on screen and in Markdown; on paper, a sentence refers to the page.
+    /// Content that is shown on screen and in Markdown; on paper, a sentence refers to the HTML page.
     OnScreen {
         /// What the content is, such as "Displacements".
         what: String,

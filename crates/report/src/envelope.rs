@@ -33,13 +33,13 @@ pub struct Envelope {
 /// A sample point on a boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundarySample {
-    /// Position (m).
+    /// `x` coordinate (m).
     pub x: f64,
-    /// Position (m).
+    /// `z` coordinate (m).
     pub z: f64,
-    /// Outward unit normal.
+    /// `x` component of the outward unit normal.
     pub nx: f64,
-    /// Outward unit normal.
+    /// `z` component of the outward unit normal.
     pub nz: f64,
     /// Coordinate along the boundary, for the CSV.
     pub coordinate: f64,

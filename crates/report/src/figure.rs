@@ -274,7 +274,7 @@ pub(crate) fn pane_letter(pane: usize) -> String {
         .map_or_else(|| format!("-{}", pane + 1), |at| char::from(b'a' + at).to_string())
 }
 
-/// Assigns unique names; the names of a document are the same in every format.
+/// Assigns unique names, such as those of figure files and anchors. A document gets the same names in every format.
 #[derive(Default)]
 pub(crate) struct Names {
     taken: HashSet<String>,
