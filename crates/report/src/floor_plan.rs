@@ -75,7 +75,7 @@ macro_rules! kinds {
 }
 
 kinds! {
-    /// A zone that is to stay free.
+    /// A zone that must be kept clear.
     Zone "zone" '.' "aisle";
     /// An opening in the edge of the floor.
     Door "door" 'D' "door";
@@ -89,7 +89,7 @@ kinds! {
     Knocked "knocked" 'K' "is knocked over";
     /// An object that lies on the floor from the start.
     Down "floor" 'O' "had fallen before";
-    /// An object in a wrong place.
+    /// An object in the wrong place.
     Wrong "wrong" '!' "wrongly placed";
 }
 

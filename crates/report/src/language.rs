@@ -254,9 +254,10 @@ impl Translator {
 
     /// Returns candidate translations of a text for which no single entry gives a complete translation.
     ///
-    /// A text with whitespace around it is translated without the whitespace, as the only candidate. Otherwise, the
-    /// candidates are the translation with the case of the first letter inverted, the translation without the
-    /// punctuation around the text, and the translations of the parts of a list, joined again.
+    /// If the text has leading or trailing whitespace, the only candidate is the translation of the trimmed text, with
+    /// the whitespace restored. Otherwise, the candidates are the translation with the case of the first letter
+    /// inverted, the translation without the punctuation around the text, and the translations of the parts of a list,
+    /// joined again.
     fn derived(&self, text: &str, depth: usize) -> Vec<Translated> {
         let mut found = Vec::new();
         let inner = text.trim();
@@ -291,8 +292,9 @@ impl Translator {
         found
     }
 
-    /// Translates `flipped`, a text with the case of its first letter inverted; `None` if no entry gives a sufficient
-    /// translation.
+    /// Translates `flipped`, a text with the case of its first letter inverted. Returns `None` if the text is not an
+    /// entry, and every matching template that begins with literal text leaves more letters untranslated than the
+    /// template contains.
     ///
     /// Does not use [`Self::derived`], which would invert the case of the first letter a second time.
     fn other_case(&self, flipped: &str, depth: usize) -> Option<Translated> {

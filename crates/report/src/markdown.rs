@@ -19,8 +19,10 @@ pub struct MarkdownBundle {
     pub files: Vec<Attachment>,
 }
 
-/// Writes the document as GitHub-flavored Markdown, with one sentence per line where sentences are
-/// given separately.
+/// Writes the document as GitHub-flavored Markdown.
+///
+/// Each string in [`Verdict::sentences`](crate::Verdict::sentences) and [`Verdict::fine`](crate::Verdict::fine) is on
+/// its own line.
 ///
 /// `figure_dir` is the folder of the figures relative to the text, with `/` as separator; if it is
 /// empty, the figures are beside the text. A player becomes a strip of frames and a table of
@@ -171,7 +173,8 @@ impl Writer {
         self.events(events);
     }
 
-    /// Writes events, each with the mark of its pane, which is empty if there is only one pane.
+    /// Writes the table of events. Each event is paired with the mark of its pane, which is empty if there is only one
+    /// pane.
     fn events(&mut self, mut events: Vec<(&str, &Event)>) {
         events.retain(|(_, event)| event.time.is_finite());
         if events.is_empty() {

@@ -319,7 +319,7 @@ fn hold(out: &mut String, kind: &str, id: &str, text: &str) {
     let _ = writeln!(out, "<script type=\"{kind}\" id=\"{id}\">{text}</script>");
 }
 
-/// Removes indents and comment lines from a script, which makes the script a fifth shorter. The
+/// Removes indentation, empty lines and comment lines from a script, which makes the script a fifth shorter. The
 /// script must not contain multi-line strings.
 fn lean(script: &str) -> String {
     let lines = script.lines().map(str::trim);

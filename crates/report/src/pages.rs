@@ -115,7 +115,7 @@ impl<'a> Flow<'a> {
         self.size[0] - 2.0 * MARGIN[0]
     }
 
-    /// Returns the distance (points) of the bottom margin from the top of a page.
+    /// Returns the distance (points) from the top of a page to its bottom margin.
     fn floor(&self) -> f64 {
         self.size[1] - MARGIN[2]
     }
@@ -354,8 +354,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Returns the height (points) of the first part of `blocks`, which must be on the same page as the heading above
-    /// it.
+    /// Returns the height (points) that the beginning of `blocks` needs on the page of the heading above it.
     fn least(&self, blocks: &[Block]) -> f64 {
         let Some((first, rest)) = blocks.split_first() else { return 0.0 };
         let figure = |figure: &Figure| self.picture(figure, "measured").1 + 24.0;

@@ -91,7 +91,8 @@ impl Writer<'_> {
         self.document.language.markup(english)
     }
 
-    /// Writes the list of events. Each event comes with the mark of its pane; the mark of a single pane is empty.
+    /// Writes the list of events. Each event is paired with the mark of its pane, which is empty if there is only one
+    /// pane.
     fn events(&mut self, mut events: Vec<(&str, &Event)>) {
         events.retain(|(_, event)| event.time.is_finite());
         if events.is_empty() {

@@ -110,7 +110,7 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Ordinates; a value that is not finite makes a gap.
     pub y: Vec<f64>,
-    /// Lower and upper bound of each ordinate, drawn as a filled band about the line or, with
+    /// Lower and upper bound of each ordinate, drawn as a filled band around the line or, with
     /// [`SeriesStyle::points`], as a bar through each point. Empty if unknown.
     pub range: Vec<[f64; 2]>,
     /// Drawing style.
@@ -123,7 +123,8 @@ impl Series {
         Self { label: label.into(), x, y, ..Self::default() }
     }
 
-    /// Creates thick bars for a category axis; each bar is given as the index of its name and its two ends in x.
+    /// Creates thick bars for a category axis. For each bar, `bars` contains the index of its name and the values of x
+    /// at its two ends.
     pub fn bars(
         label: impl Into<String>,
         bars: impl IntoIterator<Item = (usize, [f64; 2])>,

@@ -117,9 +117,9 @@ impl SceneBody {
 /// A force on a body at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForce {
-    /// Coordinate x of the point of application (m).
+    /// The x-coordinate (m) of the point of application.
     pub x: f64,
-    /// Coordinate z of the point of application (m).
+    /// The z-coordinate (m) of the point of application.
     pub z: f64,
     /// Component along x (N).
     pub fx: f64,
@@ -217,7 +217,7 @@ impl EventKind {
 pub struct Event {
     /// Time (s).
     pub time: f64,
-    /// Index in [`Scene::bodies`] of the body that the event concerns.
+    /// Index in [`Scene::bodies`] of the body that the event concerns; `None` if it concerns no particular body.
     pub body: Option<usize>,
     /// Kind.
     pub kind: EventKind,

@@ -69,8 +69,8 @@ impl Sheet {
         cells.map(|(cell, width)| wrap(Font::of(bold), size, cell, width + 1e-6)).collect()
     }
 
-    /// Returns the distance (points) of the text of a column from the left edge, and the alignment
-    /// of the text.
+    /// Returns the distance (points) from the left edge of the table to the anchor point of the text in a column, and
+    /// the alignment of the text at this point.
     pub(crate) fn place(&self, column: usize) -> (f64, Anchor) {
         let left = self.widths[..column].iter().map(|width| width + GUTTER).sum::<f64>();
         if self.numeric[column] {
@@ -81,7 +81,7 @@ impl Sheet {
     }
 }
 
-/// Returns the distance (points) of the baseline of a line from the top of its row.
+/// Returns the distance (points) from the top of a row to the baseline of the line with index `line`.
 pub(crate) fn baseline(line: usize) -> f64 {
     0.5 * AIR + 8.5 + LEADING * line as f64
 }

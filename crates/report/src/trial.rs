@@ -1,12 +1,12 @@
 //! The button "Try a change" of a report, which opens an embedded page that contains the program.
 
-/// The page that the button "Try a change" opens, and its start data. The page contains the program and is embedded in
-/// the report.
+/// The page that the button "Try a change" opens, and its initial data. The page contains the program and is embedded
+/// in the report.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a> {
     /// The page, as built by [`Shell`](crate::Shell).
     pub page: &'a str,
-    /// JSON content of the element `start` of the page.
+    /// Initial data of the page, as JSON: the content of the element with the id `start`.
     pub start: &'a str,
 }
 

@@ -22,7 +22,7 @@ use crate::{
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film). The plane of the scene is y = 0, z
 /// is up, and lengths are in m, rounded to multiples of [`POSE_QUANTUM`](crate::POSE_QUANTUM).
 ///
-/// - Bodies: closed outlines are polygons, open outlines and marks are lines. Cells carry `body`
+/// - Bodies: closed outlines are polygons; open outlines and marks are lines. Cells carry `body`
 ///   (the index in the scene), `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device) and
 ///   `displacement` (m): the displacement vector of the origin of the body since the first frame.
 ///   Bodies without a finite pose are left out.

@@ -1,4 +1,4 @@
-//! The cases of the paper as scenarios, all with the same geometry.
+//! The cases of the paper as built-in scenarios.
 
 use std::path::Path;
 
@@ -10,7 +10,8 @@ use super::ReproduceError;
 /// Peak acceleration (g) of the component PEL360 of RSN995 as published by PEER.
 const PEL360_PGA: f64 = 0.358_34;
 
-/// Tolerance (g) for the peak of a file, since the peaks that two agencies publish differ in the sixth digit.
+/// Tolerance (g) for the peak acceleration by which a record is recognized as the paper's, since the peaks that two
+/// agencies publish differ in the sixth digit.
 const PGA_TOLERANCE: f64 = 1e-4;
 
 /// The ground motion of the six barrels.
@@ -28,7 +29,7 @@ pub enum Motion {
         /// Peak acceleration of the record before scaling (m/s²).
         pga: f64,
     },
-    /// The bundled record of South Napa, used if no file is given.
+    /// The bundled record of the South Napa earthquake, used if no file is given.
     Bundled,
 }
 

@@ -41,8 +41,8 @@ pub(super) fn jobs(base: &Scenario) -> Vec<Job> {
         .collect()
 }
 
-/// Returns the factors of the four parameters: eight members with one factor changed, then sixteen
-/// members with all factors changed.
+/// Returns, for each member, the factors of the four parameters: first eight members with one parameter changed, then
+/// sixteen members with all four changed.
 fn members() -> Vec<[f64; 4]> {
     let mut members = Vec::new();
     for parameter in 0..4 {

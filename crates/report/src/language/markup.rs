@@ -65,8 +65,8 @@ fn tag(tag: &str, new: &mut dyn FnMut(&str) -> String) -> String {
     out
 }
 
-/// Returns the contents of the double-quoted string literals that a script passes to its function `t` as first
-/// argument.
+/// Returns the contents of the double-quoted string literals that a script passes to its function `t` as the
+/// first argument.
 pub(crate) fn texts_of_script(script: &str) -> impl Iterator<Item = &str> {
     script.match_indices("t(\"").filter_map(|(at, opening)| {
         let before = script[..at].chars().next_back();

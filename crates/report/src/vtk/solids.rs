@@ -46,7 +46,8 @@ pub struct Solids {
     pub times: Vec<f64>,
     /// For each time and body, position (m) and unit quaternion `w`, `x`, `y`, `z`.
     pub poses: Vec<Vec<[f64; 7]>>,
-    /// For each time and body, velocity (m/s) and angular velocity (rad/s).
+    /// For each time and body, the velocity (m/s) of the origin of the body, then the angular velocity (rad/s), both in
+    /// the world frame.
     pub twists: Vec<Vec<[f64; 6]>>,
 }
 
@@ -58,7 +59,7 @@ pub struct Solids {
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, and lengths are in m, rounded
 /// as in [`paraview`](super::paraview).
 ///
-/// Surfaces are triangles, straps and ties are lines. Cells carry `body` (the index of the body or
+/// Surfaces are triangles; straps and ties are lines. Cells carry `body` (the index of the body or
 /// tie), `role` (as in [`paraview`](super::paraview)), `level` (0 for a tie) and `displacement` (m):
 /// the displacement vector of the origin of the body since the first frame (0 for a tie). Points
 /// carry `velocity` (m/s).
