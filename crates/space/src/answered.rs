@@ -205,7 +205,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns the output files, each with its name. The report is written in the given language.
+    /// Returns the names and contents of the output files. The report is written in the given language.
     ///
     /// # Errors
     /// When an archive cannot be written.
@@ -219,7 +219,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Renders the run that is shown in detail into a folder, and returns what was rendered.
+    /// Renders the run that is shown in detail into a folder. Returns one [`Rendered`] for each part of the rendering.
     ///
     /// # Errors
     /// When a file cannot be written.

@@ -29,7 +29,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) laws: Laws,
     /// Force elements that will be attached when the stack is at rest.
     pub(crate) loose: Vec<Loose>,
-    /// Elements that already act while the stack is settled, because it would not stand without them; each with the
+    /// Elements that already act while the stack settles, because it would not stand without them; each with the
     /// description of its device.
     pub(crate) held: Vec<(Element<Spatial>, &'static Words)>,
     /// Contact pairs between the ground and the bearings of platforms.
@@ -38,7 +38,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) raised: f64,
 }
 
-/// Contact laws, and the indices of the contact laws that depend on the devices.
+/// List of all contact laws, and the indices of those that depend on the devices.
 pub(crate) struct Laws {
     /// All contact laws: those of [`StackPair::ALL`] at their indices, followed by those of the devices.
     pub(crate) all: Vec<Interface<Spatial>>,
@@ -292,15 +292,16 @@ impl<'a> Builder<'a> {
         list
     }
 
-    /// Returns the number of solids of a body that can touch other bodies. In the lists of the body, the surfaces and
-    /// node sets of these solids come first.
+    /// Returns the number of solids of a body that can touch other bodies. These solids are the first ones in the
+    /// body's lists of surfaces and node sets.
     fn solids(&self, body: BodyId) -> usize {
         // The other surfaces of the ground are dishes, which touch only bearings.
         if body == Stack::GROUND { 1 } else { self.bodies[body].surfaces.len() }
     }
 
-    /// Adds a contact pair for every solid of the contactor with every solid of the target. `law` returns the contact
-    /// law for the index of a solid of the contactor.
+    /// Adds a contact pair for each combination of a solid of the contactor and a solid of the target.
+    ///
+    /// `law` is called with the index of the contactor's solid and returns the contact law of the pair.
     fn meet(
         &self,
         list: &mut Vec<ContactPair>,
@@ -326,8 +327,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the kind of contact between a rack and a platform. A rack stands on its own platform in the same way as
-    /// on the ground.
+    /// Returns the kind of contact between a tube of a rack and a platform. A rack stands on its own platform in the
+    /// same way as on the ground.
     fn on_platform(&self, rack: BodyId, tube: usize, device: BodyId) -> StackPair {
         let part = &self.parts[rack];
         match part.seats.lies_on.get(tube) {

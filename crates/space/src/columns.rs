@@ -52,7 +52,7 @@ pub fn meaning(name: &str) -> Option<&'static str> {
 /// Returns the values of a case, in the order of [`specs`].
 ///
 /// `headings` contains the direction in which the first body left its seat, if any body did, and the directions of the
-/// fallen barrels. It is `None` for a case without a verdict, which is neither stable nor a collapse.
+/// fallen barrels. It is `None` for a case that is neither stable nor a collapse.
 pub fn values(
     headings: Option<(Option<Heading>, &[Heading])>,
 ) -> impl Iterator<Item = Option<Value>> {

@@ -388,9 +388,10 @@ fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
-/// Returns invisible points that enlarge the picture. In a free scene, the picture then contains the paths of all
-/// bodies. In the view of a stack from above, it contains the paths near the stack, since bodies fall in all
-/// directions.
+/// Returns two invisible points at opposite corners of a rectangle, so that the picture contains the rectangle. In a
+/// free scene, the rectangle contains the paths of all bodies. In the view of a stack from above, its sides are as far
+/// from the origin as the paths require, but not closer than 0.7 and not farther than 1.5 times the height of the
+/// stack. In the other views of a stack, the picture is not enlarged.
 fn yard(run: &Run, sight: Sight) -> SceneBody {
     let corners = if run.stack.is_free() {
         bounds(run, sight)

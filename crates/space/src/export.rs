@@ -15,7 +15,7 @@ use crate::report::document;
 use crate::run::Run;
 use crate::variants::Answer;
 
-/// Returns the output files for a result, each with its name. The report is written in the given language.
+/// Returns the names and contents of the output files for a result. The report is written in the given language.
 pub fn files(answer: &Answer, resolved: &str, language: Language) -> Vec<(String, Vec<u8>)> {
     let mut files = vec![
         ("summary.json", answer.summary.to_json() + "\n"),

@@ -82,12 +82,12 @@ pub struct Fate {
     /// Mean slip (m) across and along the barrels at the end of the run: the displacement relative to each support,
     /// averaged over the supports.
     pub residual_slip: [f64; 2],
-    /// Largest magnitude (m) of the mean slip across and along the barrels before the collapse. The two maxima may
-    /// occur at different times.
+    /// Largest magnitude (m) of the mean slip across and along the barrels before the collapse; over the whole run if
+    /// there is no collapse. The two maxima may occur at different times.
     pub peak_slip: [f64; 2],
-    /// Largest rise (m) above the position at rest before the collapse.
+    /// Largest rise (m) above the position at rest before the collapse; over the whole run if there is no collapse.
     pub peak_uplift: f64,
-    /// Largest displacement, slip and tilt before the collapse.
+    /// Largest displacement, slip and tilt before the collapse; over the whole run if there is no collapse.
     pub until_loss: PeakMotion,
     /// Largest displacement, slip and tilt over the whole run, falls included.
     pub whole_run: PeakMotion,
@@ -106,7 +106,7 @@ pub struct PeakMotion {
 }
 
 impl PeakMotion {
-    /// Returns the larger displacement, the larger slip and the larger tilt of the two.
+    /// Returns the larger displacement, the larger slip and the larger tilt of `self` and `other`.
     #[must_use]
     pub fn or_larger(mut self, other: Self) -> Self {
         self.raise(other.displacement, other.slip, other.tilt);

@@ -107,7 +107,7 @@ impl Ground {
         self.each(|ground| ground.calm_from(limit))
     }
 
-    /// Returns the source and the processing of all components, in one sentence each.
+    /// Returns the source and every processing step of the components, one sentence each, without duplicates.
     pub fn provenance(&self) -> Vec<String> {
         let grounds = [Some(&self.first), self.second.as_ref()];
         let motions = grounds.into_iter().flatten().filter_map(|ground| ground.motion.as_ref());

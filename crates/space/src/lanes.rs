@@ -28,9 +28,11 @@ const FEWEST: usize = 6;
 /// A case whose stack is at rest, and its index among all cases.
 pub(crate) type Ready = (usize, Prepared);
 
-/// Runs cases on one core, in lanes if `in_lanes` is `true` and the machine has a vector unit. `report` receives the
-/// index and the result of each finished case; the work ends when `stop` returns `true`. Returns the cases that have to
-/// be run one after the other.
+/// Runs cases in lanes on one core, and returns the cases that the caller has to run one after the other. Those are the
+/// cases that cannot share a register with enough other cases; they are all cases if `in_lanes` is `false` or if the
+/// machine has no vector unit.
+///
+/// `report` receives the index and the result of each finished case. The work ends when `stop` returns `true`.
 pub(crate) fn run(
     in_lanes: bool,
     ready: Vec<Ready>,

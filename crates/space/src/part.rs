@@ -31,7 +31,7 @@ pub struct Part {
     pub wine: f64,
     /// Barrels that the tubes of a rack carry, and barrels on which the tubes lie.
     pub(crate) seats: Seats,
-    /// Lines (m), in the body frame, that show the parts of devices that are fixed to the body.
+    /// Polylines that show the parts of devices that are fixed to the body. Their vertices (m) are in the body frame.
     pub(crate) lines: Vec<Vec<Vec3>>,
 }
 

@@ -58,7 +58,8 @@ impl Rest {
         (1..self.stack.parts.len()).filter(move |body| self.is_fast(bodies, *body))
     }
 
-    /// Sets the last time at which a body was in motion to `time` (s), for a stack that is set in motion again.
+    /// Records that the stack is set in motion again at a time (s). This becomes the last time at which a body was in
+    /// motion.
     pub fn wake(&mut self, time: f64) {
         self.moved = time;
     }

@@ -27,7 +27,7 @@ pub struct Standing {
     pub stack: Stack,
     /// The state at rest.
     pub state: State<Spatial>,
-    /// Working memory with the forces at rest.
+    /// Working memory of the model; it contains the forces in the state at rest.
     pub scratch: Scratch<Spatial>,
     /// Result of settling; `None` if the scenario starts without settling.
     pub settled: Option<Settled>,

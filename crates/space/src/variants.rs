@@ -109,7 +109,7 @@ impl Case {
     }
 
     /// Returns the direction in which the first body left its seat, if any body did, and the directions of the fallen
-    /// barrels; `None` without a verdict.
+    /// barrels; `None` for a case that is neither stable nor a collapse.
     pub fn headings(&self) -> Option<(Option<Heading>, &[Heading])> {
         let judged = matches!(self.result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
         judged.then_some((self.first, self.debris.as_slice()))

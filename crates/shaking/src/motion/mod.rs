@@ -226,7 +226,8 @@ pub struct MotionSpec {
 }
 
 impl MotionSpec {
-    /// Returns the files of the motion: the record, then a separate vertical component.
+    /// Returns the files of the motion: the file of the record, then the separate file of the vertical component. A
+    /// bundled record has no file.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
         let record = match &mut self.source {
             MotionSource::Record(record) => Some(record),

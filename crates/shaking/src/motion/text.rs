@@ -114,7 +114,7 @@ fn read_scale(reader: Reader<'_>) -> Result<Scale, InputError> {
     Ok(scale)
 }
 
-/// Reads `measure`, `value` and `of`.
+/// Reads the fields `measure`, `value` and `of`; `None` if `measure` and `value` are missing.
 fn read_measured(reader: &Reader<'_>) -> Result<Option<Scale>, InputError> {
     let value = reader.optional_quantity_with_dimension("value")?;
     let of = reader.choice("of")?;

@@ -24,7 +24,8 @@ use crate::stack::Stack;
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
     element: Element<Spatial>,
-    /// Length (m) of the unloaded element minus the distance between its ends; negative for a pretensioned element.
+    /// Length (m) of the unloaded element minus the distance between its ends in the stack at rest; negative for a
+    /// pretensioned element.
     give: f64,
     /// `true` for a guide whose first body may turn about the axis of the guide; see [`Guide::about_axis`].
     about_axis: bool,

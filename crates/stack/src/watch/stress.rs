@@ -41,18 +41,18 @@ pub struct StressEnvelope {
     pub body: BodyId,
     /// Points to which the stress values belong.
     pub points: Vec<BoundaryPoint>,
-    /// Length (m) of the boundary that each value represents.
+    /// For each point, the length (m) of the boundary that the point represents.
     ///
     /// Where the boundary is loaded at rest, this is the loaded length, so that the stress at rest multiplied by the
     /// length is the contact force.
     pub lengths: Vec<f64>,
     /// `true` if the boundary is closed, so that the last point is adjacent to the first point.
     pub closed: bool,
-    /// Stress at rest (N/m).
+    /// Stress (N/m) at rest, at each point.
     pub at_rest: Vec<f64>,
-    /// Largest stress until the first loss of seat (N/m).
+    /// Largest stress (N/m) until the first loss of seat, at each point.
     pub peak: Vec<f64>,
-    /// Largest stress over the whole run, including falls (N/m).
+    /// Largest stress (N/m) over the whole run, including falls, at each point.
     pub peak_whole_run: Vec<f64>,
     /// Sum of all normal contact forces on the body.
     pub total: TotalForce,

@@ -37,7 +37,7 @@ pub struct Chance {
 /// Number of draws of the coefficients.
 pub(super) const FITS: usize = 400;
 
-/// Steps of the chain between two draws.
+/// Number of steps of the Metropolis chain from one draw to the next.
 const THIN: usize = 20;
 
 /// Values of the unknowns, and the azimuth of a stack.

@@ -300,7 +300,6 @@ fn direction(text: &mut String, cases: &[FieldCases]) {
                    two modes is a convention (see [space.md](space.md)).\n");
 }
 
-/// Returns the shares of a study for stacks with a given number of levels.
 fn share<'a>(results: &'a Results, study: &str, levels: usize) -> Option<&'a Share> {
     results.shares.iter().find(|one| one.study == study && one.levels == levels)
 }

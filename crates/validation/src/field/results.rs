@@ -35,9 +35,9 @@ pub struct Share {
     pub study: String,
     /// Number of levels.
     pub levels: usize,
-    /// Number of cases that fall, and number of all cases.
+    /// Number of cases in which the stack falls, and number of all cases.
     pub count: (u32, u32),
-    /// 95 % confidence interval (Wilson score interval) of the share of the simulated cases that fall.
+    /// 95 % confidence interval (Wilson score interval) of the share of the simulated cases in which the stack falls.
     pub design: Interval,
     /// Fitted probability of a fall, averaged over the simulated cases.
     pub fitted: f64,
@@ -95,8 +95,8 @@ pub struct Results {
     /// For each value of the barrel–rack friction: the share of barrels on the floor, as mean and central 90 % interval
     /// over all other unknowns.
     pub curve: Vec<(f64, Range)>,
-    /// Densities of the barrel–rack friction per unit of ln μ: value of the friction, then its density in the prior,
-    /// given the statement `half`, and given all statements.
+    /// For each of several values μ of the barrel–rack friction: the value, followed by its density per unit of ln μ in
+    /// the prior, in the posterior given the statement `half`, and in the posterior given all statements.
     pub densities: Vec<[f64; 4]>,
 }
 

@@ -119,7 +119,7 @@ impl<R: Real> Bounds<R> {
     }
 }
 
-/// Place of a contact element on one of its two bodies.
+/// The points of the stress envelope of a body that a contact element loads.
 #[derive(Clone, Debug, Default)]
 struct Pressed {
     /// Index of the stress envelope of the body.
@@ -134,7 +134,7 @@ struct Pressed {
 #[derive(Clone, Debug, Default)]
 struct Lane {
     stresses: Stresses,
-    /// For every entry of [`StressWatch::bounds`], the place of its contact element on its body.
+    /// For every entry of [`StressWatch::bounds`], the envelope points that its contact element loads.
     pressed: Vec<Pressed>,
     /// Index of the envelope point that a contact on a rack loads, by pair, contact element and body.
     on_racks: BTreeMap<(usize, u32, BodyId), usize>,
@@ -307,7 +307,8 @@ impl<R: Real> StressWatch<R> {
         if single.watched {
             single.raise(0);
         }
-        // The places of all contacts in this lane, including those on racks, are to be determined anew.
+        // The envelope points that the contacts in this lane load, including those on racks, have to be determined
+        // again.
         for bounds in &mut self.bounds {
             bounds.put(lane, &Bounds::none());
         }
