@@ -86,7 +86,8 @@ fn columns(run: &Run) -> u32 {
     run.scenario.stack().map_or(2, |stack| stack.columns)
 }
 
-/// Names a body by the paper's number and our name: "3 = R1".
+/// Returns a label with the paper's number and our name of a body, such as "3 = R1"; only the name for a body without a
+/// number.
 fn named(run: &Run, body: usize) -> String {
     let name = &run.assembly.parts[body].name;
     match numbering::number(name, columns(run)) {
@@ -271,7 +272,8 @@ fn is_above(run: &Run, one: usize, other: usize) -> bool {
         .any(|JointForces { joint, .. }| [joint.upper, joint.lower] == [one, other])
 }
 
-/// Returns `true` if racks have the contact nodes in all pairs of bodies that touch by design.
+/// Returns `true` if, in every pair of bodies that touch by design, the contact body (the one with the contact nodes)
+/// is a rack.
 pub(super) fn racks_carry_the_nodes(run: &Run) -> bool {
     let parts = &run.assembly.parts;
     designed_pairs(run).all(|(contactor, _, _)| parts[contactor].kind == PartKind::Rack)

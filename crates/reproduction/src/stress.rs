@@ -77,7 +77,8 @@ pub(super) fn average(run: &Run) -> Option<f64> {
     envelope(run, 1)?.mean_amplification()
 }
 
-/// Returns one row for every definition of the amplification, for a case for which the paper states a value.
+/// Returns one row for every definition of the stress amplification, with its value in the run of a case. `place` is
+/// the place in the paper that states an amplification for this case.
 pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Comparison> {
     let row = |(name, value, meaning): Definition| Comparison {
         place,

@@ -13,7 +13,8 @@ pub(super) fn blocks(study: &Study, id: &str, published: [Option<f64>; 3]) -> Ve
     vec![Block::Figure(figure(study, id, published)), Block::Table(table(study))]
 }
 
-/// Returns the compared time ([`Subject::time`], s), the drift ratio of the top and the stress amplification of a run.
+/// Returns the compared time ([`Subject::time`], s), the drift ratio of the top and the stress amplification of a run;
+/// `None` for a value that is not in the summary.
 fn values(subject: Subject, summary: &Summary) -> [Option<f64>; 3] {
     [subject.time(summary), summary.demands.top_drift_ratio, summary.demands.stress_amplification]
 }
