@@ -186,7 +186,7 @@ pub(super) fn histories(run: &Run, id: &str, caption: &str) -> Block {
     Block::Figure(Figure::new(id, caption, plot))
 }
 
-/// Returns the time (s) of peak ground velocity.
+/// Returns the time (s) of peak ground velocity; `None` if the ground velocity was not recorded.
 pub(super) fn peak_velocity_time(run: &Run) -> Option<f64> {
     let velocity = &run.recording.channel("ground velocity x")?.values;
     let fastest = velocity.iter().zip(&run.recording.times);
@@ -202,7 +202,8 @@ pub(super) fn envelope(run: &Run, number: u32, id: &str, caption: &str) -> Optio
     Some(Block::Figure(Figure { id: id.to_owned(), caption: caption.to_owned(), ..figure }))
 }
 
-/// Returns the displacement (m) along `x` of a body relative to the ground at the time of its fall.
+/// Returns the displacement (m) along `x` of a body relative to the ground at the time of its fall; `None` if the body
+/// did not fall.
 pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     let fell = run.fates.fate(body).fell_at?;
@@ -212,7 +213,7 @@ pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
 }
 
 /// Returns two lengths (m) along the boundary of the upper or lower half of a barrel: the length that is loaded at
-/// rest, and the length that is loaded at any time until the first loss of seat.
+/// rest, and the length that is loaded at any time until the first loss of seat. `None` if the run has no such barrel.
 pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     let envelope = run.stresses.of(body)?;

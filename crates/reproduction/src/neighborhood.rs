@@ -9,7 +9,7 @@ use super::cases::PaperCases;
 use super::pool::Job;
 use super::vary::{self, brief, with};
 
-/// Number of samples.
+/// Number of samples: racks near the reconstructed rack.
 pub(super) const COUNT: usize = 40;
 
 /// Largest relative change of each length and angle of the rack, and of each coefficient of

@@ -7,7 +7,7 @@ use barrelstack_report::significant;
 use super::compare::{Agreement, Comparison, NOT_STATED};
 use super::numbering;
 
-/// Returns the stress envelope of the barrel that has the given number in the paper.
+/// Returns the stress envelope of the barrel that has the given number in the paper; `None` if the run has none.
 pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
@@ -15,7 +15,8 @@ pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
 }
 
 /// Returns the largest vertical force on barrel 1 until the first loss of seat, divided by the force at rest. The force
-/// comes from the rack above the barrel if `above` is `true`, and otherwise from the rack below it.
+/// comes from the rack above the barrel if `above` is `true`, and otherwise from the rack below it. `None` if there is no
+/// such rack.
 fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     let body = envelope(run, 1)?.body;
     let joint =
