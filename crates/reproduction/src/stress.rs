@@ -15,8 +15,8 @@ pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
 }
 
 /// Returns the largest vertical force on barrel 1 until the first loss of seat, divided by the force at rest. The force
-/// comes from the rack above the barrel if `above` is `true`, and otherwise from the rack below it. `None` if there is no
-/// such rack.
+/// comes from the rack above the barrel if `above` is `true`, and otherwise from the rack below it. `None` if there is
+/// no such rack.
 fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     let body = envelope(run, 1)?.body;
     let joint =

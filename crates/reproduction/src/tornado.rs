@@ -8,8 +8,8 @@ use super::study::{Study, Subject};
 /// Vertical offsets, within a row, of the bars of the three quantities, as fractions of the row spacing.
 const PLACES: [f64; 3] = [0.26, 0.0, -0.26];
 
-/// Builds the plot and the table of a study. `published` contains the paper's values of the three quantities of
-/// [`values`].
+/// Builds the plot and the table of a study. `published` contains the paper's values of the compared time (s),
+/// the drift ratio of the top and the stress amplification.
 pub(super) fn blocks(study: &Study, id: &str, published: [Option<f64>; 3]) -> Vec<Block> {
     vec![Block::Figure(figure(study, id, published)), Block::Table(table(study))]
 }
