@@ -86,7 +86,8 @@ fn columns(run: &Run) -> u32 {
     run.scenario.stack().map_or(2, |stack| stack.columns)
 }
 
-/// Names a body by the paper's number and our name: "3 = R1".
+/// Returns a label with the paper's number and our name of a body, such as "3 = R1"; only the name for a body without a
+/// number.
 fn named(run: &Run, body: usize) -> String {
     let name = &run.assembly.parts[body].name;
     match numbering::number(name, columns(run)) {
@@ -185,7 +186,7 @@ pub(super) fn histories(run: &Run, id: &str, caption: &str) -> Block {
     Block::Figure(Figure::new(id, caption, plot))
 }
 
-/// Returns the time (s) of peak ground velocity.
+/// Returns the time (s) of peak ground velocity; `None` if the ground velocity was not recorded.
 pub(super) fn peak_velocity_time(run: &Run) -> Option<f64> {
     let velocity = &run.recording.channel("ground velocity x")?.values;
     let fastest = velocity.iter().zip(&run.recording.times);
@@ -201,7 +202,8 @@ pub(super) fn envelope(run: &Run, number: u32, id: &str, caption: &str) -> Optio
     Some(Block::Figure(Figure { id: id.to_owned(), caption: caption.to_owned(), ..figure }))
 }
 
-/// Returns the displacement (m) along `x` of a body relative to the ground at the time of its fall.
+/// Returns the displacement (m) along `x` of a body relative to the ground at the time of its fall; `None` if the body
+/// did not fall.
 pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     let fell = run.fates.fate(body).fell_at?;
@@ -211,7 +213,7 @@ pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
 }
 
 /// Returns two lengths (m) along the boundary of the upper or lower half of a barrel: the length that is loaded at
-/// rest, and the length that is loaded at any time until the first loss of seat.
+/// rest, and the length that is loaded at any time until the first loss of seat. `None` if the run has no such barrel.
 pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     let envelope = run.stresses.of(body)?;
@@ -271,7 +273,8 @@ fn is_above(run: &Run, one: usize, other: usize) -> bool {
         .any(|JointForces { joint, .. }| [joint.upper, joint.lower] == [one, other])
 }
 
-/// Returns `true` if racks have the contact nodes in all pairs of bodies that touch by design.
+/// Returns `true` if, in every pair of bodies that touch by design, the contact body (the one with the contact nodes)
+/// is a rack.
 pub(super) fn racks_carry_the_nodes(run: &Run) -> bool {
     let parts = &run.assembly.parts;
     designed_pairs(run).all(|(contactor, _, _)| parts[contactor].kind == PartKind::Rack)

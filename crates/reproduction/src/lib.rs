@@ -72,7 +72,7 @@ pub enum ReproduceError {
     /// Stopped before all cases of the paper were completed, so there is no table.
     #[error("the runs were stopped")]
     Stopped {
-        /// The completed cases, each with its result.
+        /// The name and the result of each completed case.
         done: Vec<(String, String)>,
     },
 }

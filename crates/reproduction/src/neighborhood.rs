@@ -9,7 +9,7 @@ use super::cases::PaperCases;
 use super::pool::Job;
 use super::vary::{self, brief, with};
 
-/// Number of samples.
+/// Number of samples: racks near the reconstructed rack.
 pub(super) const COUNT: usize = 40;
 
 /// Largest relative change of each length and angle of the rack, and of each coefficient of
@@ -81,7 +81,8 @@ pub(super) fn jobs(cases: &PaperCases) -> Vec<Job> {
     jobs
 }
 
-/// Evaluates the findings of each sample, from the summaries in the order of the jobs.
+/// Evaluates the findings of each sample from the summaries, which `next` returns in the order of the jobs. The
+/// summaries include the six barrels if `with_six` is `true`.
 pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> Vec<Kept> {
     let mut kept = Vec::new();
     while let (true, Some(eight), Some(along)) = (kept.len() < COUNT, next.next(), next.next()) {

@@ -16,12 +16,12 @@ pub(super) fn name(number: u32, columns: u32) -> String {
     if place > columns { format!("R{level}") } else { format!("B{level}.{place}") }
 }
 
-/// Returns the paper's number of the body with our `name`; `None` for a body without number.
+/// Returns the paper's number of the body with our `name`; `None` for a body without a number.
 pub(super) fn number(name: &str, columns: u32) -> Option<u32> {
     (1..=12 * (columns + 1)).find(|number| self::name(*number, columns) == name)
 }
 
-/// Builds the table of numbers and names.
+/// Builds the table of the paper's body numbers and our names of these bodies.
 pub(super) fn table() -> Table {
     let pair =
         |number: u32, columns: u32| Cell::text(format!("{number} = {}", name(number, columns)));

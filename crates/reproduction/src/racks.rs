@@ -90,7 +90,8 @@ pub(super) fn jobs(cases: &PaperCases) -> Vec<Job> {
     jobs
 }
 
-/// Combines the summaries of the runs of each rack, which `next` returns in the order of the jobs.
+/// Collects the results of each rack from the summaries, which `next` returns in the order of the jobs. The summaries
+/// include the six barrels if `with_six` is `true`.
 pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> Vec<Tried> {
     let mut found = Vec::new();
     for (name, _) in RACKS {

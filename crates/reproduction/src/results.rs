@@ -11,8 +11,8 @@ use super::racks::{self, Tried};
 use super::study::{self, Factor, Study, Subject};
 use super::{ReproduceError, ensemble, vary};
 
-/// Ratios of the paper's measured k and c to its calibrated values, which are 10 % and 16 % greater
-/// than the measured values.
+/// Ratios of the paper's measured contact stiffness k and damping c to its calibrated values, which are 10 % (k) and
+/// 16 % (c) greater than the measured values.
 pub(super) const MEASURED: (f64, f64) = (1.0 / 1.10, 1.0 / 1.16);
 
 /// All planned runs.
@@ -20,11 +20,11 @@ pub(super) struct Plan {
     /// The jobs, the longest first.
     pub(super) jobs: Vec<Job>,
     studies: Vec<(Subject, Vec<Factor>)>,
-    /// Number of jobs before the jobs of the studies.
+    /// Number of jobs that belong to no study. They come first in `jobs`.
     single: usize,
 }
 
-/// A completed case with everything recorded.
+/// A completed case: the run with its recording, and its summary.
 pub(super) struct Ran {
     /// The run.
     pub(super) run: Run,

@@ -7,7 +7,7 @@ use barrelstack_report::significant;
 use super::compare::{Agreement, Comparison, NOT_STATED};
 use super::numbering;
 
-/// Returns the stress envelope of the barrel that has the given number in the paper.
+/// Returns the stress envelope of the barrel that has the given number in the paper; `None` if the run has none.
 pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
@@ -15,7 +15,8 @@ pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
 }
 
 /// Returns the largest vertical force on barrel 1 until the first loss of seat, divided by the force at rest. The force
-/// comes from the rack above the barrel if `above` is `true`, and otherwise from the rack below it.
+/// comes from the rack above the barrel if `above` is `true`, and otherwise from the rack below it. `None` if there is
+/// no such rack.
 fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     let body = envelope(run, 1)?.body;
     let joint =
@@ -77,7 +78,8 @@ pub(super) fn average(run: &Run) -> Option<f64> {
     envelope(run, 1)?.mean_amplification()
 }
 
-/// Returns one row for every definition of the amplification, for a case for which the paper states a value.
+/// Returns one row for every definition of the stress amplification, with its value in the run of a case. `place` is
+/// the place in the paper that states an amplification for this case.
 pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Comparison> {
     let row = |(name, value, meaning): Definition| Comparison {
         place,

@@ -56,7 +56,8 @@ impl Subject {
 
 /// A quantity that the study changes, and its changes.
 pub(super) struct Factor<Run = Scenario> {
-    /// The quantity as it is in the unchanged case, such as "cradle supports at ±28°".
+    /// Description of the quantity, in most cases with its value in the unchanged case, such as "cradle supports at
+    /// ±28°".
     pub(super) name: String,
     /// Name of each change, with its scenario or, after the runs, with its [`Summary`].
     pub(super) ends: Vec<(String, Run)>,

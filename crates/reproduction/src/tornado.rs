@@ -5,15 +5,17 @@ use barrelstack_report::{Axis, Block, Cell, Figure, Mark, Plot, Series, SeriesSt
 
 use super::study::{Study, Subject};
 
-/// Vertical offsets, within a row, of the bars of the three quantities.
+/// Vertical offsets, within a row, of the bars of the three quantities, as fractions of the row spacing.
 const PLACES: [f64; 3] = [0.26, 0.0, -0.26];
 
-/// Builds the plot and the table of a study.
+/// Builds the plot and the table of a study. `published` contains the paper's values of the compared time (s),
+/// the drift ratio of the top and the stress amplification.
 pub(super) fn blocks(study: &Study, id: &str, published: [Option<f64>; 3]) -> Vec<Block> {
     vec![Block::Figure(figure(study, id, published)), Block::Table(table(study))]
 }
 
-/// Returns the compared time ([`Subject::time`], s), the drift ratio of the top and the stress amplification of a run.
+/// Returns the compared time ([`Subject::time`], s), the drift ratio of the top and the stress amplification of a run;
+/// `None` for a value that is not in the summary.
 fn values(subject: Subject, summary: &Summary) -> [Option<f64>; 3] {
     [subject.time(summary), summary.demands.top_drift_ratio, summary.demands.stress_amplification]
 }

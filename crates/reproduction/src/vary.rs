@@ -35,8 +35,8 @@ pub(super) fn stiffness(stack: &mut StackSpec, factor: f64) {
     }
 }
 
-/// Multiplies the contact damping of all seats by `factor`; damping that is stated as a restitution
-/// is unchanged.
+/// Multiplies the contact damping of all seats by `factor`; damping that is stated as a coefficient of restitution is
+/// unchanged.
 pub(super) fn damping(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         interface.damp(factor);
@@ -53,7 +53,7 @@ pub(super) fn rack_ground_friction(stack: &mut StackSpec, factor: f64) {
     stack.interfaces.rack_ground.roughen(factor);
 }
 
-/// Multiplies the ratio of tangential to normal stiffness of all contacts by `factor`.
+/// Multiplies the ratio of tangential to normal stiffness of all seats by `factor`.
 pub(super) fn stick_stiffness(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         if let Friction::Coulomb { tangential_stiffness_ratio, .. } = &mut interface.friction {

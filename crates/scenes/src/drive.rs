@@ -160,7 +160,7 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// Creates a record that starts at rest, from acceleration samples (m/s²) at a time step (s).
+    /// Creates a record that starts at rest, from acceleration samples (m/s²) that are a time step (s) apart.
     pub fn new(step: f64, acceleration: Vec<f64>) -> Self {
         let (mut velocity, mut displacement) = (vec![0.0], vec![0.0]);
         for (i, pair) in acceleration.windows(2).enumerate() {

@@ -12,7 +12,7 @@ pub fn rocking_rate(radius: f64) -> f64 {
     (0.75 * GRAVITY / radius).sqrt()
 }
 
-/// Returns the restitution η = 1 − (3/2) sin² α of a rocking rectangle of slenderness angle α (rad).
+/// Returns the coefficient of restitution η = 1 − (3/2) sin² α of a rocking rectangle of slenderness angle α (rad).
 ///
 /// Angular momentum about the new corner is conserved (Housner 1963).
 pub fn housner_restitution(alpha: f64) -> f64 {
@@ -22,8 +22,9 @@ pub fn housner_restitution(alpha: f64) -> f64 {
 /// Returns the time in which a rocking rectangle returns to upright from rest at the rotation `share · α`, multiplied
 /// by the frequency parameter p.
 ///
-/// The result is exact for any α. Conservation of energy gives θ'²/2p² = cos(α − θ₀) − cos(α − θ). The substitution θ =
-/// θ₀ (1 − s²) removes the square root from the integrand, which is then integrated by the midpoint rule.
+/// `alpha` is the slenderness angle α (rad) of the rectangle. The result is exact for any α. Conservation of
+/// energy gives θ'²/2p² = cos(α − θ₀) − cos(α − θ). The substitution θ = θ₀ (1 − s²) removes the square root from the
+/// integrand, which is then integrated by the midpoint rule.
 pub fn quarter_period(alpha: f64, share: f64) -> f64 {
     let start = share * alpha;
     let parts = 20_000;
@@ -44,9 +45,10 @@ pub fn slender_quarter_period(share: f64) -> f64 {
     acosh(1.0 / (1.0 - share))
 }
 
-/// Returns the peak rotation, divided by α, after an impact that keeps the fraction `ratio` = η² of the energy.
+/// Returns the peak rotation of a rocking rectangle after an impact that keeps the fraction `ratio` = η² of the energy,
+/// divided by the slenderness angle α (rad).
 ///
-/// The block starts at rest from the rotation `share · α`; the result is exact for any α.
+/// The rectangle starts at rest from the rotation `share · α`; the result is exact for any α.
 pub fn next_peak(alpha: f64, share: f64, ratio: f64) -> f64 {
     // The impact reduces cos(α − θ) − cos α by the ratio; half angles avoid cancellation.
     let height = |theta: f64| 2.0 * sin(alpha - 0.5 * theta) * sin(0.5 * theta);
@@ -130,10 +132,10 @@ pub fn steady_slide_amplitude(a: f64, n: f64, omega: f64) -> f64 {
     a * GRAVITY / (omega * omega) * (1.0 - share * share).sqrt()
 }
 
-/// Returns the restitution and the deepest penetration (in units of v₀/ω) of a mass that falls on a spring and a
-/// damper, where the damper acts on approach only.
+/// Returns the coefficient of restitution and the deepest penetration (in units of v₀/ω) of a mass that falls on a
+/// spring and a damper, where the damper acts on approach only.
 ///
-/// The restitution is `None` if the mass does not lift off. `gravity_number` is Γ = g/(ωv₀). The approach is a damped
+/// The coefficient e is `None` if the mass does not lift off. `gravity_number` is Γ = g/(ωv₀). The approach is a damped
 /// motion about the rest position Γ (in units of v₀/ω), and the rebound is undamped: e = √(x² − 2Γx), where x is
 /// the deepest penetration.
 pub fn rebound_under_gravity(damping_ratio: f64, gravity_number: f64) -> (Option<f64>, f64) {

@@ -59,7 +59,7 @@ pub struct Selection {
     pub mean: Vec<f64>,
     /// Standard deviation of ln Sa over the set, at each period, with the divisor `n − 1`.
     pub deviation: Vec<f64>,
-    /// Number of candidates whose scale factor to the mean of the target lies within the limits.
+    /// Number of candidates that can be scaled to the mean of the target by a factor within the limits.
     ///
     /// The scaled candidate has the ln Sa of the target's mean at the conditioning period. If the target is not
     /// conditional, the scaled candidate has the same average of ln Sa over all periods as the target's mean.
@@ -237,7 +237,7 @@ impl Pool {
         (self.limits[0]..=self.limits[1]).contains(&(level - self.rows[row].level))
     }
 
-    /// Returns the number of candidates whose scale factor to the mean of the target lies within the limits.
+    /// Returns the number of candidates that can be scaled to the mean of the target by a factor within the limits.
     fn eligible(&self, target: &SelectionTarget) -> usize {
         let level = self.level(target.mean());
         (0..self.rows.len()).filter(|row| self.reaches(*row, level)).count()

@@ -154,7 +154,7 @@ impl SelectionTarget {
     ///
     /// Some columns are zero: the column of the conditioning period, and the column of any period at which ln Sa is
     /// determined by its values at the preceding periods. Published correlations are rounded, so small negative pivots
-    /// occur.
+    /// occur; their columns are zero, too.
     fn cholesky(&self) -> Vec<f64> {
         let n = self.periods.len();
         let mut root = vec![0.0; n * n];

@@ -109,7 +109,7 @@ impl MotionError {
     /// Returns `Ok` if `value` is finite.
     ///
     /// # Errors
-    /// If `value` is not finite.
+    /// If `value` is not finite; the message begins with `what`.
     pub fn require_finite(what: &str, value: f64) -> Result<(), Self> {
         Self::require(value.is_finite(), what, "a finite number", value)
     }

@@ -8,7 +8,7 @@ const WINDOW: f64 = 0.7;
 /// Corner frequency of the low-pass filter, as a fraction of the oscillator's frequency.
 const CORNER: f64 = 0.85;
 
-/// Returns FIV3 (m/s) of accelerations (m/s²) for an oscillator of period `period` (s):
+/// Returns FIV3 (m/s) of accelerations (m/s²) for an oscillator with the period T = `period` (s):
 ///
 /// ```text
 /// V(t) = ∫ a dt from t to t + 0.7 T,   a low-passed at 0.85/T

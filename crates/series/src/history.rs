@@ -19,7 +19,7 @@ pub enum History {
     Sum(Vec<Delayed>),
 }
 
-/// A history that starts at a later time.
+/// A history that starts after a delay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Delayed {
     /// Time (s) at which the history starts; not negative.

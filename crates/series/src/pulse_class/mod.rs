@@ -209,7 +209,7 @@ impl WaveletAt {
     }
 }
 
-/// The strongest wavelet at every time.
+/// For each sample, the strongest wavelet over all scales.
 struct Map {
     best: Vec<Option<WaveletAt>>,
     time_step: f64,
@@ -314,7 +314,7 @@ impl Extracted {
     }
 }
 
-/// Returns the first sample at which the cumulative sum of squares exceeds a fraction of the total.
+/// Returns the index of the first sample at which the cumulative sum of squares exceeds a fraction of the total.
 fn time_of(values: &[f64], share: f64) -> usize {
     let total: f64 = values.iter().map(|v| v * v).sum();
     let mut sum = 0.0;

@@ -112,8 +112,8 @@ pub enum TargetSpectrum {
         /// Height of attachment divided by roof height, 0 to 1.
         height_ratio: f64,
     },
-    /// Points in ascending order of period; between the points, the logarithm of the acceleration
-    /// is linear in the logarithm of the period; outside, the acceleration is constant.
+    /// A spectrum given by points in ascending order of period. Between the points, the logarithm of the acceleration
+    /// is linear in the logarithm of the period. Outside the points, the acceleration is constant.
     Table {
         /// Period (s) and pseudo-acceleration (m/s²) of each point.
         points: Vec<(f64, f64)>,
