@@ -32,7 +32,7 @@ const INSTALL: &str = "npm ci --prefix crates/report/tests/browser";
 const BROWSERS: [&str; 4] =
     ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// A script that opens pages in a browser.
+/// A check of pages in a browser, performed by a script of the repository.
 pub(crate) struct Check {
     root: PathBuf,
     script: &'static str,

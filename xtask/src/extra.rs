@@ -16,7 +16,8 @@ pub(crate) struct Extra {
     pub(crate) command: Result<Command, String>,
     /// Advice after a failure.
     pub(crate) remedy: &'static str,
-    /// Check of pages that the program writes; the program is built before the check.
+    /// The browser check that `command` runs; `None` if it runs none. The program writes the pages to be checked, so it
+    /// is built before the check.
     pub(crate) pages: Option<browser::Check>,
 }
 

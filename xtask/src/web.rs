@@ -19,7 +19,7 @@ const GIVEN: [&str; 1] = ["page.progress"];
 /// Compiler for this target, which Debian's packages `rustc-web` and `libstd-rust-web-dev` install.
 const DEBIAN: &str = "/usr/bin/rustc";
 
-/// Build of the engine and its page.
+/// A build of the engine and its page that is possible with the tools of this machine.
 pub(crate) struct Build {
     root: PathBuf,
     /// Linker, if the standard library of the target must be built from source; `None` if it is installed.

@@ -1,5 +1,5 @@
-//! Limits on vague words for which more precise terms exist, such as `report`, `request` and
-//! `displacement`.
+//! Limits on the use of vague words. More precise terms, such as `report`, `request` and
+//! `displacement`, can replace them.
 
 use std::path::Path;
 

@@ -91,7 +91,7 @@ impl Rocker {
         (0..steps).fold(start, |at, i| self.step(at, 1.0, (f64::from(i) * length, length), &push))
     }
 
-    /// Returns `true` if the block cannot overturn any more without another push.
+    /// Returns `true` if the block can no longer overturn, provided that the ground acceleration stays zero.
     fn safe(&self, theta: f64, spin: f64) -> bool {
         let left = self.alpha - theta.abs();
         let barrier = if self.slender { 0.5 * left * left } else { 1.0 - cos(left) };

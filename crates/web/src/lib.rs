@@ -89,7 +89,7 @@ pub enum RequestKind {
     Verdict,
     /// The summary of a run and its variants, as JSON; it is the same in all languages.
     Summary,
-    /// The report of a run and its variants, as a page.
+    /// The report of a run and its variants, as an HTML page.
     Report,
     /// All files that the command-line program writes for a run and its variants, including the
     /// report, encoded like a request: the JSON lists the names and lengths of the files, and their
@@ -122,7 +122,7 @@ pub struct Request {
     /// Numbers of the variants to which the request refers; 0 is the nominal case.
     #[serde(default)]
     pub numbers: Vec<u32>,
-    /// Results of the variants `numbers`, in each plane.
+    /// For each plane, the results of the variants `numbers`.
     #[serde(default)]
     pub cases: Vec<Vec<Case>>,
     /// Length in bytes of the paths of the barrels (the trails), which follow the records.
@@ -303,7 +303,7 @@ struct Shown<'a> {
     variant: u32,
     /// The result in sentences.
     sentences: Vec<String>,
-    /// Outcomes of the planes, the governing plane first.
+    /// Outcome in each plane, the governing plane first.
     outcomes: Vec<&'a barrelstack::summary::OutcomeSummary>,
     warnings: Vec<String>,
     stage: Fragment,
@@ -335,7 +335,7 @@ fn words_of(error: impl Display) -> String {
     error.to_string()
 }
 
-/// Formats an error of a run, with the position of the error in the scenario.
+/// Formats an error from a run. The position of the error in the scenario precedes the message, if it is known.
 fn placed(error: &RunFailure, scenario: &Scenario) -> String {
     match scenario.place_of(&error.fields()) {
         Some(place) => format!("{place}: {error}"),

@@ -10,7 +10,7 @@ use barrelstack::motion::{
 use barrelstack_report::Language;
 use serde::{Deserialize, Serialize};
 
-/// Information supplied by the user that the files lack.
+/// Information that the files lack and that the user supplies; each field is `None` if it is not supplied.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Reading {

@@ -48,8 +48,8 @@ impl<'a> Fitted<'a> {
         self.chance.of(levels, point, self.in_space, draw)
     }
 
-    /// Returns the mean probability of a fall over the cases of a height and over all draws of the coefficients. It is
-    /// close to the share of these cases that fell.
+    /// Returns the mean probability of a fall over the cases with a given number of levels and over all draws of the
+    /// coefficients. The mean is close to the share of these cases in which the stack fell.
     pub(super) fn over_the_design(&self, levels: usize) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for draw in 0..FITS {
@@ -121,7 +121,7 @@ pub(super) fn predicted(
     draws.iter().map(share).collect()
 }
 
-/// Returns the likelihood of every share.
+/// Returns the weight of each draw: the likelihood of the share that was predicted for the draw.
 pub(super) fn weights(shares: &[f64], likelihood: Likelihood) -> Vec<f64> {
     shares.iter().map(|share| likelihood.of(*share)).collect()
 }

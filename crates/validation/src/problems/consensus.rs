@@ -106,8 +106,8 @@ fn verdict(
         })
 }
 
-/// A rack: a beam whose underside rests on the crowns of the barrels below, with feet and with two support points per
-/// barrel.
+/// Creates a rack: a beam with two feet and with two support points per barrel. Its feet can touch the ground, and its
+/// underside can touch the crowns of the barrels below.
 fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
     let center = CLEARANCE + RADIUS - 0.5 * BEAM;
     let mut supports = vec![];

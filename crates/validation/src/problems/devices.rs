@@ -339,7 +339,8 @@ fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure>
     Ok(peaks.fold(0.0, f64::max))
 }
 
-/// Creates the problems that compare the best tuning, found by a search, with Den Hartog's formula.
+/// Creates two problems for a tuned mass that is `share` times the mass of the structure. The first computes the
+/// largest amplification at Den Hartog's tuning. The second finds the best frequency of the tuned mass by a search.
 fn den_hartog(share: f64) -> [Problem; 2] {
     let exact = Tuning::den_hartog(share);
     let source = "Den Hartog 1956, section 3.3";

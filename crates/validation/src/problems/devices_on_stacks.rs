@@ -112,8 +112,8 @@ fn mass_of(run: &Run, counts: impl Fn(&str) -> bool) -> f64 {
     counted.map(|(_, body)| body.mass).sum()
 }
 
-/// Creates the problems of a stack of two levels whose upper level slides without friction between stops on the two
-/// barrels below.
+/// Creates the problems of a two-level stack with stops between the upper rack and the two barrels below. The upper
+/// level slides without friction until it meets a stop.
 fn walking_stop() -> [Problem; 2] {
     let (gap, stiffness) = (0.01, 1e5);
     let (push_g, seconds) = (0.1, 0.1);

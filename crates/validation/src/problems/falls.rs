@@ -62,8 +62,8 @@ fn stopped(height: f64) -> Problem {
         })
 }
 
-/// Thresholds by which a body counts as fallen when it is 20 cm below its initial position. All other thresholds are
-/// infinite, and the body has no seat that it could lose.
+/// Thresholds for a body that does not rest on a rack. The body counts as fallen when it is 20 cm below its initial
+/// position. All other thresholds are infinite.
 const THRESHOLDS: Thresholds = Thresholds {
     seat_loss_ratio: f64::INFINITY,
     fall_drop: 0.2,

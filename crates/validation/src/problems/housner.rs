@@ -9,7 +9,7 @@ use crate::{Effort, Failure, GRAVITY, Problem, theory};
 
 const SOURCE: &str = "Housner 1963";
 
-/// Creates a block whose corners are damped enough to reproduce Housner's ratio (see `restitution`).
+/// Creates a block whose corners are damped enough to reproduce Housner's ratio of angular velocities at an impact.
 pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {
     RockingBlock {
         // Damping in both directions is closer to Housner's plastic impact than damping on approach alone.
@@ -78,8 +78,8 @@ fn ratio(alpha: f64) -> Problem {
     .refined(move |effort, level| firm(effort, 1.0, alpha).refined(level - 1).restitution(0.5))
 }
 
-/// Returns the peak rotation divided by α after a number of impacts, for a block that is released at φ = ½; exact for
-/// any α.
+/// Returns the peak rotation divided by α after a number of impacts. The block is released at rest at the rotation
+/// `½ α`. The result is exact for any α.
 fn peaks(alpha: f64, impacts: usize) -> f64 {
     let eta = theory::housner_restitution(alpha);
     (0..impacts).fold(0.5, |share, _| theory::next_peak(alpha, share, eta * eta))

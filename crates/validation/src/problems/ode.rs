@@ -293,8 +293,7 @@ fn flight() -> Problem {
     })
 }
 
-/// Returns the block that the module `statistics` subjects to an ensemble of records, in the form that the independent
-/// integrator of this crate takes.
+/// Returns the block of the module `statistics`, as input for the independent integrator of this crate.
 fn rigid() -> Rocker {
     let alpha = 0.25;
     let restitution = theory::housner_restitution(alpha);

@@ -52,7 +52,7 @@ pub(super) fn problem() -> Problem {
     })
 }
 
-/// Deepest overlaps (m) that occurred.
+/// Deepest overlaps (m) and largest residual of the energy balance in all runs so far.
 #[derive(Default)]
 struct Survey {
     /// Deepest overlap of two bodies neither of which rests on the other in the initial stack.
@@ -63,7 +63,7 @@ struct Survey {
     end: f64,
     /// The same as `seat`, but only in the last frame.
     seat_end: f64,
-    /// Largest residual of the energy balance, as a fraction of the throughput of energy.
+    /// Largest residual of the energy balance, as a fraction of the energy that passed through the system.
     balance: f64,
 }
 

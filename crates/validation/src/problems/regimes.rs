@@ -27,8 +27,8 @@ pub(super) fn standing(
     Ok(Scene::new(vec![floor(), body], laws, DOWN)?)
 }
 
-/// Returns two flags: whether a block of height 2 m and slenderness `s` has begun to slide, and whether it has begun to
-/// rock.
+/// Returns two flags: whether a block has begun to slide, and whether it has begun to rock, under a ground acceleration
+/// that grows to `beta` (g) and is then constant. The block is 2 m high, and its width is `s` times its height.
 fn start(s: f64, beta: f64, friction: f64, refinement: i32) -> Result<(bool, bool), Failure> {
     let finer = 2.0_f64.powi(refinement);
     let mut scene = standing((2.0 * s, 2.0), friction, 1e10 * finer * finer)?;

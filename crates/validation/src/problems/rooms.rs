@@ -221,8 +221,8 @@ const BARREL: [f64; 4] = [280.0, 0.9, 0.1, 0.345];
 /// Stiffness (N/m^1.5) of the wall, coefficient of restitution, and speed (m/s) below which the restitution is higher.
 const REBOUND: [f64; 3] = [1.2e9, 0.4, 0.05];
 
-/// Simulates a barrel that moves into a wall on a smooth floor. The barrel spins as if it rolled. Since no contact has
-/// friction, the spin does not change.
+/// Simulates a barrel that moves on a smooth floor and strikes a wall. The barrel spins as if it rolled. Since no
+/// contact has friction, the spin does not change.
 fn thrown_back() -> Result<RoomRun, Failure> {
     let ([mass, speed, gap, radius], [stiffness, restitution, slow]) = (BARREL, REBOUND);
     let text = format!(
@@ -273,7 +273,7 @@ fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// Compares the force on the wall with that of the independent integration. Returns the largest difference at any step,
-/// divided by the largest force on the wall.
+/// divided by the largest force on the wall; `None` if the room has no wall.
 fn apart(run: &RoomRun) -> Option<f64> {
     let wall = run.obstacles.first()?;
     let exact = history(wall.history.iter().map(|(time, _)| *time));

@@ -19,7 +19,7 @@ const MASS: f64 = 100.0;
 /// Stiffness (N/m) of a joint's nodes.
 const STIFFNESS: f64 = 1e9;
 
-/// Creates a tower of blocks with given sizes (m), listed from the ground up.
+/// Creates a tower of blocks. `sizes` are the widths and heights (m) of the blocks, from the ground up.
 ///
 /// `frictions` are the friction coefficients of the joint on the ground and of all other joints.
 fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> {

@@ -17,8 +17,8 @@ use crate::spatial::{floor, free, gravity_on_slope, ground_of, solid, yaw};
 use crate::swing::run_crossings;
 use crate::{Failure, Problem};
 
-/// Fills of a barrel of 225 liters: name, mass (kg), and moments of inertia (kg·m²) about the axis of the barrel and
-/// about a transverse axis.
+/// Contents of a barrel of 225 liters: name, and the mass (kg) and the moments of inertia (kg·m²) of the barrel with
+/// these contents. The moments are about the axis of the barrel and about a transverse axis.
 const FILLS: [(&str, f64, f64, f64); 3] =
     [("frozen", 269.0, 14.1, 22.6), ("fluid", 269.0, 4.0, 8.5), ("empty", 48.0, 3.9, 6.0)];
 
