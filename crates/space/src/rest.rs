@@ -4,10 +4,12 @@
 use std::sync::Arc;
 
 use barrelstack::assemble::PartKind;
-use barrelstack::scenario::Scenario;
+use barrelstack::scenario::{Scenario, Until};
+use barrelstack::watch::Fading;
 use barrelstack::watch::rest::{CLIMB, HOLD, ON_FLOOR, calm, quiet_from};
 use barrelstack_dynamics::{BodyId, Linear as _, Pose, Space as _, Spatial, State, Twist, Vec3};
 
+use crate::fate::Fates;
 use crate::ground::Ground;
 use crate::stack::Stack;
 
@@ -24,8 +26,12 @@ pub struct Rest {
     calm_from: f64,
     /// Kinetic energy per unit mass (m²/s²) below which a body counts as at rest.
     slow: f64,
-    /// Last time (s) at which a body was in motion.
+    /// Last time (s) at which a body was in motion, or the ground was not yet calm.
     moved: f64,
+    /// Decay of the ground motion, for a run that may end before the ground is calm; `None` for every other run.
+    fading: Option<Arc<Fading>>,
+    /// Time (s) of the next test whether the rest of the motion is faint.
+    due: f64,
 }
 
 impl Rest {
@@ -34,16 +40,24 @@ impl Rest {
         let gravity = scenario.run.gravity;
         let calm = || ground.calm_from(gravity * calm(stack.model.interfaces()));
         let (still_from, calm_from) = quiet_from(scenario.run.until, ground.end(), calm);
-        Self { stack, still_from, calm_from, slow: gravity * CLIMB, moved: 0.0 }
+        let fading = (scenario.run.until == Until::Verdict).then(|| {
+            let strength = |time| ground.strength(time);
+            Arc::new(Fading::new(ground.end(), ground.resolution(), HOLD, strength))
+        });
+        let slow = gravity * CLIMB;
+        Self { stack, still_from, calm_from, slow, moved: 0.0, fading, due: 0.0 }
     }
 
-    /// Records an accepted state; returns `true` if all bodies have come to rest. `collapsed` is `true` after a loss of
-    /// seat.
-    pub(crate) fn observe(&mut self, state: &State<Spatial>, collapsed: bool) -> bool {
-        self.observe_bodies(state.time, (&state.poses, &state.twists), collapsed)
+    /// Records an accepted state; returns `true` if all bodies have come to rest or, if only the verdict is requested, if
+    /// the stack can no longer fall. `fates` are the outcomes so far.
+    pub(crate) fn observe(&mut self, state: &State<Spatial>, fates: &Fates) -> bool {
+        let collapsed = fates.collapse().is_some();
+        let rests = self.observe_bodies(state.time, (&state.poses, &state.twists), collapsed);
+        rests || !collapsed && self.is_safe(state.time, fates.strained())
     }
 
-    /// Records the poses and twists of all bodies at a time (s). Returns `true` if all have come to rest.
+    /// Records the poses and twists of all bodies at a time (s). Returns `true` if all have come to rest. `collapsed` is
+    /// `true` after a loss of seat.
     pub fn observe_bodies(&mut self, time: f64, bodies: Motions<'_>, collapsed: bool) -> bool {
         let from = if collapsed { self.calm_from } else { self.still_from };
         let moves = time < from || self.moving(bodies).any(|body| !self.rolls_away(bodies, body));
@@ -51,6 +65,14 @@ impl Rest {
             self.moved = time;
         }
         self.moved + HOLD <= time
+    }
+
+    /// Returns `true` if the rest of the motion is [faint](Fading), compared with what the stack has withstood since
+    /// `strained`, the time (s) at which it was last close to losing a seat.
+    fn is_safe(&mut self, time: f64, strained: f64) -> bool {
+        let Some(fading) = self.fading.as_ref().filter(|_| self.due <= time) else { return false };
+        self.due = time + fading.interval();
+        strained + HOLD <= time && fading.faint_from(strained) <= time
     }
 
     /// Returns the bodies that are not at rest.

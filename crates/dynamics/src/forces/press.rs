@@ -105,15 +105,23 @@ fn touch_by<S: Space>(
     (group, near): (&Group, <S::Real as Real>::Mask),
     scratch: &mut Scratch<S>,
 ) {
+    let surface = &model.bounded(pair.target).surfaces[pair.surface].surface;
+    let leads = leads(model, pair);
     let own;
     let kinematics = if S::SOLIDS_SHARE {
         PairKinematics::shared(&mut scratch.kinematics, model, pair, state, &scratch.rotations)
     } else {
-        own = PairKinematics::new(model, pair, state, &scratch.rotations);
+        let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
+        if let Nodes::Rounds(rounds) = model.pair_nodes(pair) {
+            let nodes = &state.contact_elements.nodes[group.first..group.end];
+            if rounds::belongs_to_others(leads, rounds, nodes, &frame, surface) {
+                return;
+            }
+        }
+        own = PairKinematics::new(frame, pair, state);
         &own
     };
     let frame = &kinematics.frame;
-    let surface = &model.bounded(pair.target).surfaces[pair.surface].surface;
     let counted = frame.at_face(model, pair);
     if counted.is_some_and(|face| face.never()) {
         return;
@@ -145,7 +153,7 @@ fn touch_by<S: Space>(
         step,
         frame,
         meeting,
-        leads: leads(model, pair),
+        leads,
         pair: group.pair,
         elements: &state.contact_elements,
         sum: PairWrench::default(),

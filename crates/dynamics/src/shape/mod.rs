@@ -174,6 +174,13 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
         }
     }
 
+    /// Returns lanes in which a round piece of the surface is [nearest](Self::nearest) to a point (m), and no straight side
+    /// can [bear](Self::bearing) the point. This is a quick test that does not find all such lanes.
+    #[inline(always)]
+    fn is_by_arc(&self, _point: S::Vector) -> <S::Real as Real>::Mask {
+        <S::Real as Real>::Mask::default()
+    }
+
     /// Returns the radius (m) of a ball about the origin that encloses the surface; infinite for a half-plane.
     fn reach(&self) -> f64;
 }
@@ -256,6 +263,15 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
             Self::Polygon(shape) => shape.bearing(point, facing, nearest),
             Self::BarrelProfile(shape) => shape.bearing(point, facing, nearest),
             Self::Circle(_) | Self::HalfPlane(_) | Self::Cradle(_) => nearest,
+        }
+    }
+
+    #[inline(always)]
+    fn is_by_arc(&self, point: Vec2<R>) -> R::Mask {
+        match self {
+            Self::Circle(_) => !R::Mask::default(),
+            Self::BarrelProfile(shape) => shape.is_by_stave(point),
+            Self::HalfPlane(_) | Self::Polygon(_) | Self::Cradle(_) => R::Mask::default(),
         }
     }
 

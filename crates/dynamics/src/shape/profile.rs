@@ -6,7 +6,7 @@ use super::{BoundaryNode, Facing, Gap, Nearest, Piece, Section, nodes_along};
 use crate::body::Round;
 use crate::math;
 use crate::real::Real;
-use crate::space::{Planar, Vec2};
+use crate::space::{Linear as _, Planar, Vec2};
 
 /// The longitudinal outline of a barrel, centered at the origin, with the axis of the barrel along `x`.
 ///
@@ -28,6 +28,9 @@ pub struct BarrelProfile<R = f64> {
     /// Height of the center of a rounded edge above the axis (m).
     pub corner_height: R,
 }
+
+/// Distance (m) from the core and from the heads beyond which rounding errors cannot change which piece is nearest.
+const STAVE_MARGIN: f64 = 2e-5;
 
 /// Number of parts into which a rounded edge is divided for drawing.
 const EDGE_STEPS: usize = 6;
@@ -88,6 +91,18 @@ impl<R: Real> BarrelProfile<R> {
             toward_end: Vec2::new(zero, up),
             core: gap.distance + self.rounding,
         }
+    }
+
+    /// Returns the lanes in which a point (m) lies outside the core and next to a stave, away from the heads, so that the
+    /// stave is [nearest](Self::nearest) to it.
+    #[inline(always)]
+    pub(super) fn is_by_stave(&self, point: Vec2<R>) -> R::Mask {
+        let margin = R::splat(STAVE_MARGIN);
+        let from_center =
+            Vec2::new(point.x, point.z.abs() + (self.stave_radius - self.bilge_radius));
+        let core = self.stave_radius - self.rounding + margin;
+        let length = self.half_length - self.rounding - margin;
+        (core * core).lt(from_center.dot(from_center)) & point.x.abs().lt(length)
     }
 
     /// Returns the stave or head on which a boundary point of another body bears, if the point lies inside the core;

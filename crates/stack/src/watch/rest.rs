@@ -1,10 +1,15 @@
-//! Rest criterion: the ground is still, or calm after a collapse, and no body is fast enough to change the outcome.
+//! Rest criterion: no body is fast enough to change the outcome, and the ground is still, or calm after a collapse, or
+//! has become much weaker than what the stack has withstood.
 
+use std::sync::Arc;
+
+use barrelstack_dynamics::lanes::PerLane;
 use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{
     BodyId, FrictionLaw, Interface, Linear, Motion, Planar, Space, State, lanewise,
 };
 
+use super::fading::Fading;
 use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
 use crate::scenario::{Scenario, Until};
@@ -38,7 +43,8 @@ pub const ON_FLOOR: f64 = 1.05;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// All bodies had come to rest on ground that was still. After a collapse, or if only the verdict is requested,
-    /// calm ground is sufficient.
+    /// calm ground is sufficient. If only the verdict is requested, a motion whose rest is [faint](Fading) is sufficient,
+    /// too.
     Rest,
     /// The run had continued after a collapse for the time that the scenario specifies.
     AfterCollapse,
@@ -92,8 +98,12 @@ pub struct Rest<R: Real = f64> {
     /// Duration (s) for which all bodies must be slow before they count as at rest.
     hold: R,
     bodies: Vec<Mover<R>>,
-    /// Time (s) at which a body was last in motion.
+    /// Time (s) at which a body was last in motion, or the ground was not yet calm.
     moved: R,
+    /// Decay of the ground motion, for a run that may end before the ground is calm; `None` for every other run.
+    fading: PerLane<Option<Arc<Fading>>>,
+    /// Time (s) of the next test whether the rest of the motion is faint; infinite for a run without `fading`.
+    due: R,
 }
 
 /// A free body whose motion is observed.
@@ -107,7 +117,9 @@ struct Mover<R: Real> {
 }
 
 lanewise!(struct Mover<R> { body, inertia, floor });
-lanewise!(struct Rest<R> { still_from, calm_from, slow, hold, bodies, moved });
+lanewise!(struct Rest<R> {
+    still_from, calm_from, slow, hold, bodies, moved, fading, due
+});
 
 impl Rest {
     /// Creates the rest criterion for a scenario and its ground motion. No body counts as at rest before it has been
@@ -131,13 +143,20 @@ impl Rest {
         };
         let calm = || ground.calm_from(scenario.run.gravity * calm(assembly.model.interfaces()));
         let (still_from, calm_from) = quiet_from(scenario.run.until, ground.end(), calm);
+        let hold = HOLD * scale.sqrt();
+        let fading = (scenario.run.until == Until::Verdict).then(|| {
+            let strength = |time| ground.strength(time);
+            Arc::new(Fading::new(ground.end(), ground.resolution(), hold, strength))
+        });
         Self {
             still_from,
             calm_from,
             slow: scenario.run.gravity * CLIMB * scale,
-            hold: HOLD * scale.sqrt(),
+            hold,
             bodies: assembly.parts.iter().enumerate().filter_map(mover).collect(),
             moved: 0.0,
+            due: if fading.is_some() { 0.0 } else { f64::INFINITY },
+            fading: PerLane::single(fading),
         }
     }
 }
@@ -170,10 +189,19 @@ pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
 }
 
 impl<R: Real> Rest<R> {
-    /// Observes an accepted state and returns the lanes at rest. `collapsed` are the lanes with a collapsed stack.
+    /// Observes an accepted state and returns the lanes in which the stack is at rest or, if only the verdict is requested,
+    /// can no longer fall.
+    ///
+    /// `collapsed` are the lanes with a collapsed stack; `strained` is the time (s) at which a body was last
+    /// [close](super::Fates::strained) to losing its seat.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
-    pub fn observe(&mut self, state: &State<Planar<R>>, collapsed: R::Mask) -> R::Mask {
+    pub fn observe(
+        &mut self,
+        state: &State<Planar<R>>,
+        collapsed: R::Mask,
+        strained: R,
+    ) -> R::Mask {
         let mut moves = state.time.lt(R::select(collapsed, self.calm_from, self.still_from));
         let ground = state.twists[Assembly::GROUND].linear;
         for at in 0..self.bodies.len() {
@@ -191,7 +219,24 @@ impl<R: Real> Rest<R> {
             }
         }
         self.moved = R::select(moves, state.time, self.moved);
-        (self.moved + self.hold).le(state.time)
+        let due = self.due.le(state.time);
+        let safe =
+            if due.any() { self.safe(state.time, due, strained) } else { R::Mask::default() };
+        (self.moved + self.hold).le(state.time) | (safe & !collapsed)
+    }
+
+    /// Tests the lanes in `due` and returns those in which the rest of the motion is faint, compared with what the stack
+    /// has withstood since it was last close to losing a seat.
+    fn safe(&mut self, time: R, due: R::Mask, strained: R) -> R::Mask {
+        let held = (strained + self.hold).le(time);
+        R::Mask::from_lanes(|lane| {
+            let Some(fading) = self.fading[lane].as_ref().filter(|_| due.lane(lane)) else {
+                return false;
+            };
+            let now = time.lane(lane);
+            self.due = self.due.with_lane(lane, now + fading.interval());
+            held.lane(lane) && fading.faint_from(strained.lane(lane)) <= now
+        })
     }
 
     /// Returns the lanes in which a body is a barrel on the floor that approaches no other body.

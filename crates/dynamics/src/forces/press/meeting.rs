@@ -32,14 +32,9 @@ struct Motion<S: Space> {
 }
 
 impl<S: Space> PairKinematics<S> {
+    /// Computes the relative motion of the bodies of a pair in its frame.
     #[inline(always)]
-    pub(super) fn new(
-        model: &Model<S>,
-        pair: &ContactPair,
-        state: &State<S>,
-        rotations: &[S::Rotation],
-    ) -> Self {
-        let frame = PairFrame::new(model, pair, &state.poses, rotations);
+    pub(super) fn new(frame: PairFrame<S>, pair: &ContactPair, state: &State<S>) -> Self {
         let (contactor, target) = (state.twists[pair.contactor], state.twists[pair.target]);
         let apart = frame.contactor - frame.target;
         let target_spin = S::unrotate_spin(frame.rotation, target.angular);
@@ -69,7 +64,10 @@ impl<S: Space> PairKinematics<S> {
         }
         match last {
             Some(known) => known,
-            none => none.insert(Self::new(model, pair, state, rotations)),
+            none => {
+                let frame = PairFrame::new(model, pair, &state.poses, rotations);
+                none.insert(Self::new(frame, pair, state))
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Group, Laws, Press, midway};
 use crate::body::Round;
+use crate::pair_frame::PairFrame;
 use crate::real::{Mask, Real, both};
 use crate::shape::{Facing, Nearest, Surface};
 use crate::space::{Linear, Space, Wrench};
@@ -27,6 +28,28 @@ const NEARLY_INSIDE: f64 = 1e-5;
 /// Tolerance, as the sine of an angle, for contacts between two round pieces: the direction toward the other piece may
 /// lie outside the limits of a piece by this angle.
 const LIMIT: f64 = 2e-7;
+
+/// Returns `true` if no round piece of a group can touch a surface: the contactor leads in no lane, and an arc of the
+/// surface is nearest to every piece, so that every contact belongs to the pair with exchanged bodies.
+#[inline(always)]
+pub(super) fn belongs_to_others<S: Space>(
+    leads: <S::Real as Real>::Mask,
+    rounds: &[Round<S>],
+    nodes: &[u32],
+    frame: &PairFrame<S>,
+    surface: &S::Surface,
+) -> bool {
+    if leads.any() {
+        return false;
+    }
+    for node in nodes {
+        let center = frame.to_surface(rounds[*node as usize].center);
+        if !surface.is_by_arc(center).all() {
+            return false;
+        }
+    }
+    true
+}
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Adds the contacts of the round pieces of a convex boundary. Each piece is tested at its deepest point.
