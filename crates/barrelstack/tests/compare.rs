@@ -164,7 +164,7 @@ fn runs_are_called_by_what_differs_between_them_in_words() {
         (&[&[], &[strap]], &["without straps", "with straps"]),
         (
             &[&[], &[strap], &[tight]],
-            &["without straps", "with straps at 3 kN", "with straps at 4 kN"],
+            &["without straps", "with straps tightened to 3 kN", "with straps tightened to 4 kN"],
         ),
         (
             &[&[], &["stack.levels=3"], &[strap]],

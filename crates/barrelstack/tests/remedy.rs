@@ -163,32 +163,33 @@ fn sentences_say_what_suffices_and_what_does_not() {
             Some(height(1)),
             Some(straps(1)),
             &both[..],
-            "Three levels, or five levels strapped together at 4 kN, would have stood in 63 of 64 variants. At most \
-             12 % of stacks with either change would fall (95 % confidence, allowing for the choice among 9 \
-             changes).",
+            "A stack of three levels, or of five levels held together by straps tightened to 4 kN, would have stood \
+             in 63 of 64 variants. At most 12 % of stacks with either change would fall (95 % confidence, corrected \
+             for trying up to 9 changes).",
         ),
         (
             Some(height(1)),
             Some(straps(0)),
             &both,
-            "Three levels would have stood in 63 of 64 variants, and five levels strapped together at 4 kN in all 64 \
-             variants. At most 12 % of stacks with the first change and 9 % of stacks with the second would fall (95 \
-             % confidence, allowing for the choice among 9 changes).",
+            "A stack of three levels would have stood in 63 of 64 variants, and one of five levels held together by \
+             straps tightened to 4 kN in all 64 variants. At most 12 % of stacks with the first change and 9 % of \
+             stacks with the second would fall (95 % confidence, corrected for trying up to 9 changes).",
         ),
         (
             Some(height(0)),
             None,
             &both,
-            "Three levels would have stood in all 64 variants; straps tightened to 4 kN would not suffice. At most 9 % of \
-             stacks with three levels would fall (95 % confidence, allowing for the choice among 9 changes).",
+            "A stack of three levels would have stood in all 64 variants; straps tightened to 4 kN would not have \
+             been enough. At most 9 % of stacks with three levels would fall (95 % confidence, corrected for trying \
+             up to 9 changes).",
         ),
         (
             None,
             Some(straps(0)),
             &both,
-            "Five levels strapped together at 4 kN would have stood in all 64 variants; fewer levels without straps \
-             would not suffice. At most 9 % of stacks with five levels strapped together at 4 kN would fall (95 % \
-             confidence, allowing for the choice among 9 changes).",
+            "A stack of five levels held together by straps tightened to 4 kN would have stood in all 64 variants; \
+             fewer levels without straps would not have been enough. At most 9 % of stacks with five levels held \
+             together by straps tightened to 4 kN would fall (95 % confidence, corrected for trying up to 9 changes).",
         ),
         (
             None,
@@ -234,13 +235,14 @@ fn sentences_say_what_the_uncertain_constants_leave_open() {
         (
             said(height(0.08), straps(0.12), Some(0.71)),
             "0 to 8 % of stacks with the first change and 0 to 12 % of stacks with the second would fall (95 % \
-             range); fewer stacks fall with three levels than with five levels strapped together at 4 kN in 71 % of \
-             the random draws of these constants.",
+             range); fewer stacks fall with three levels than with five levels held together by straps tightened to \
+             4 kN in 71 % of the random draws of these constants.",
         ),
         (
             said(height(0.08), straps(0.08), Some(0.4)),
             "0 to 8 % of stacks with either change would fall (95 % range); fewer stacks fall with five levels \
-             strapped together at 4 kN than with three levels in 60 % of the random draws of these constants.",
+             held together by straps tightened to 4 kN than with three levels in 60 % of the random draws of these \
+             constants.",
         ),
         (
             said(height(0.08), None, None),

@@ -14,11 +14,14 @@ pub(crate) fn plural(count: u32, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
+/// The share of the only run if that run does not count.
+const NO_RUN: &str = "no run";
+
 /// Formats a count out of `of` variants with its share and interval, such as "28 of 32 variants (88 %, 95 % interval
 /// 72 % to 95 %)"; "the only run" or "no run" if `of` is 1.
 pub(crate) fn share(count: &Count, of: u32) -> String {
     if of == 1 {
-        return if count.of_variants == 0 { "no run" } else { "the only run" }.to_owned();
+        return if count.of_variants == 0 { NO_RUN } else { "the only run" }.to_owned();
     }
     let [low, high] = count.interval.map(percent);
     let share = count.share.map_or_else(String::new, |share| format!("{}, ", percent(share)));
@@ -433,11 +436,11 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     all.extend(summary.aisles.iter().map(|aisle| of_aisle(aisle, *of)));
     for place in &summary.places {
         if let Some(count) = &place.leads_out {
-            all.push(format!(
-                "In {}, a path 0.6 m wide from the place \"{}\" to a door remains open.",
-                share(count, *of),
-                place.name
-            ));
+            let path = format!("a path 0.6 m wide from the place \"{}\" to a door", place.name);
+            all.push(match share(count, *of) {
+                none if none == NO_RUN => format!("In {none} does {path} remain open."),
+                some => format!("In {some}, {path} remains open."),
+            });
         }
     }
     let struck: Vec<_> = summary.obstacles.iter().filter(|one| one.peak.is_some()).collect();

@@ -229,7 +229,7 @@ fn usual_changes_fit_or_say_why_not() {
         names,
         [
             "spacing 1 m",
-            "all levels strapped together at 5 kN",
+            "all levels held together by straps tightened to 5 kN",
             "stops under every rack",
             "one level less",
             "every stack turned by 90°"

@@ -111,9 +111,10 @@ impl Progress {
         self.interrupt.flow()
     }
 
-    /// Reports the number of attempts in a search of unknown length. `things` is the noun for the attempts.
-    pub(crate) fn searched(&self, done: u64, things: &str) -> ControlFlow<()> {
-        let words = || format!("{done} {things}");
+    /// Reports the number of attempts in a search of unknown length. `one` and `things` are the words for one attempt
+    /// and for several attempts.
+    pub(crate) fn searched(&self, done: u64, one: &str, things: &str) -> ControlFlow<()> {
+        let words = || format!("{done} {}", if done == 1 { one } else { things });
         if let Some(bar) = &self.bar.0 {
             bar.set_message(words());
         }

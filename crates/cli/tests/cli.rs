@@ -100,7 +100,7 @@ fn the_summary_says_what_happened_in_words_and_rows() {
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(stderr(&output), "");
     let first: Vec<&str> = text.lines().take(3).collect();
-    assert_eq!(first[0], "Eight barrels on four levels, 4 in sine");
+    assert_eq!(first[0], "Eight barrels on four levels, 4-inch sine");
     assert!(first[1].starts_with("  ") && first[1].ends_with('.'), "{}", first[1]);
     let second = "  In the run that is shown, the barrels of level 4 are thrown off the stack with their rack, R4.";
     assert_eq!(first[2], second);
@@ -348,7 +348,8 @@ fn a_free_scene_is_not_judged() {
 #[test]
 fn variants_are_listed_counted_and_shown_by_their_number() {
     let text = stdout(&barrelstack(SHORT));
-    let headline = "  Falls. Shaken across the barrels, all 4 variants fall (at least 51 %). The first seat is lost between ";
+    let headline = "  Falls. Shaken across the barrels, all 4 variants fall (95 % confidence: at least 51 %). The \
+                    first seat is lost between ";
     assert!(text.contains("; no barrel falls within 0.1 s of that.\n"), "{text}");
     assert!(text.contains(headline), "{text}");
     assert!(text.contains("variants                4 of 4 collapse, 95 % interval "), "{text}");

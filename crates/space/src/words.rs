@@ -107,11 +107,9 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
         if let Some((_, loss, heading)) = part.and_then(|body| run.fates[body].left_seat) {
             let shown = if summary.ensemble.is_some() { "In the run that is shown, " } else { "" };
             let kind = run.stack.parts[part.unwrap_or(0)].kind.name();
-            let event = format!(
-                "{} in the direction {}",
-                leaves(&format!("{kind} {first}"), loss),
-                toward(heading)
-            );
+            let moves = if loss == Loss::Dropped { "and falls" } else { "in the direction" };
+            let event =
+                format!("{} {moves} {}", leaves(&format!("{kind} {first}"), loss), toward(heading));
             sentences.push(format!("{}, after {time:.1} s.", capital(&format!("{shown}{event}"))));
         }
     }

@@ -203,7 +203,7 @@ export async function checkPage(browser, suite, { file, spanish, program, native
     await page.waitForFunction(() => window.barrelstack.state().look.settings.find(({ path }) => path === "stack.levels").value === "4");
   });
   await suite.check("every device is offered, tells what it does beside the stack without it, goes with the height, and off again", async () => {
-    const strap = "all levels strapped together at 3 kN";
+    const strap = "all levels held together by straps tightened to 3 kN";
     await page.locator("#devices-box").waitFor();
     const offered = await page.locator("#devices tbody th").allTextContents();
     const known = await page.evaluate(() => [...new Set(window.barrelstack.runs.now().devices.candidates.map(({ device }) => device))]);

@@ -127,7 +127,9 @@ fn devices_are_offered_as_they_go_on_the_stack_and_present_ones_are_listed() {
     for words in barrelstack::device::DEVICES {
         assert!(of(&three, words.one) >= words.candidates.len(), "{}", words.one);
     }
-    assert!(names(&three).contains(&"all levels strapped together at 3 kN".to_owned()));
+    assert!(
+        names(&three).contains(&"all levels held together by straps tightened to 3 kN".to_owned())
+    );
     assert_eq!(three["candidates"][0]["changes"][0], "stack.strap.levels=1");
     // Two levels have no top three.
     let two = offered(&["stack.levels=2"]);

@@ -101,11 +101,11 @@ fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     };
     let others = || runs.iter().filter_map(|(_, other)| of(other)).filter(|other| other.levels > 0);
     let mut said = vec!["with straps".to_owned()];
+    if others().any(|other| other.pretension != own.pretension) {
+        said.push(format!("tightened to {} kN", 1e-3 * own.pretension));
+    }
     if others().any(|other| other.levels != own.levels) {
         said.push(format!("on {}", counted(own.levels, "level")));
-    }
-    if others().any(|other| other.pretension != own.pretension) {
-        said.push(format!("at {} kN", 1e-3 * own.pretension));
     }
     said.join(" ")
 }

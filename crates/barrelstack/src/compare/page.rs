@@ -219,7 +219,11 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
                 1 => " In 1 further variant, one of the two runs has no verdict.".to_owned(),
                 some => format!(" In {some} further variants, one of the two runs has no verdict."),
             };
-            let clear = if pair.is_clear() { "" } else { ": no difference is proven" };
+            let clear = if pair.is_clear() {
+                ""
+            } else {
+                ": the difference is not statistically significant"
+            };
             let both = match pair.both {
                 0 => "none collapses".to_owned(),
                 1 => "1 collapses".to_owned(),

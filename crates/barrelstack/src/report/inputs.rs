@@ -116,7 +116,7 @@ pub fn not_modeled(in_space: bool) -> Block {
          ties and straps yield and tear.",
         "Neighboring stacks and walls, with which a stack may collide.",
         "Soil and building: the ground motion acts at the floor.",
-        "Wear, creep, temperature and air.",
+        "Wear, creep, temperature and air resistance.",
         "Breakage of barrels when they land.",
     ];
     Block::List(own.into_iter().chain(always).map(str::to_owned).collect())

@@ -93,10 +93,8 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         return Vec::new();
     }
     let noun = if planes.len() > 1 { "barrels in this plane" } else { "barrels" };
-    let mut table = Table::new(
-        "Ranges span the 5th to the 95th percentile of the variants; the range of all variants is in parentheses.",
-        &[("", "")],
-    );
+    let mut table =
+        Table::new("Ranges span the 5th to the 95th percentile of the variants.", &[("", "")]);
     table.columns.extend(
         planes.iter().map(|(view, _)| barrelstack_report::Column::new(capital(view.words()), "")),
     );
@@ -118,13 +116,15 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         Some(format!("{low} to {high}"))
     });
     row("first loss of a seat", &|spread| {
-        spread.first_loss.map(|Range { p05, p95, least, most, .. }| {
-            format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1))
+        spread.first_loss.map(|first| {
+            let [most, all] = spans(&first, 1);
+            format!("{most} s{}", over_all(&most, &all, " s"))
         })
     });
     row("first fall", &|spread| {
-        spread.first_fall.map(|Range { p05, p95, least, most, .. }| {
-            let time = format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1));
+        spread.first_fall.map(|first| {
+            let [most, all] = spans(&first, 1);
+            let time = format!("{most} s{}", over_all(&most, &all, " s"));
             let counted = spread.counted("the first loss of a seat");
             if counted.is_empty() {
                 time
@@ -134,10 +134,14 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         })
     });
     row("barrels fallen in a collapse", &|spread| {
-        spread.barrels_fallen.map(|Range { p05, p95, least, most, .. }| {
-            let fallen = format!("{} of {} {noun} fall", span(p05, p95, 0), spread.barrels);
+        spread.barrels_fallen.map(|fallen| {
+            let [most, all] = spans(&fallen, 0);
             let counted = spread.counted("the first loss of a seat");
-            format!("{fallen}{counted} (in every variant: {})", span(least, most, 0))
+            format!(
+                "{most} of {} {noun} fall{counted}{}",
+                spread.barrels,
+                over_all(&most, &all, "")
+            )
         })
     });
     row("collapses by mode", &|spread| {
@@ -161,6 +165,17 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         ))
     }));
     blocks
+}
+
+/// Formats the central range and the whole range of a result over all variants.
+fn spans(range: &Range, decimals: usize) -> [String; 2] {
+    let Range { p05, p95, least, most, .. } = *range;
+    [span(p05, p95, decimals), span(least, most, decimals)]
+}
+
+/// Returns the whole range of a result in parentheses; empty if it equals the central range that is shown before it.
+fn over_all(central: &str, whole: &str, unit: &str) -> String {
+    if central == whole { String::new() } else { format!(" (over all variants: {whole}{unit})") }
 }
 
 /// Formats a range, or a single number if both ends are equal when rounded.

@@ -67,10 +67,20 @@ fn words(rocking: &Rocking) -> String {
     let Rocking { drift, block } = rocking;
     let reached = centimeters(drift.largest);
     let period = rocking.rigid(drift.largest);
-    let rigid = if period.is_finite() {
-        format!("would rock with a period of {} s at the largest drift", significant(period, 2))
+    let (rigid, loose) = if period.is_finite() {
+        (
+            format!(
+                "would rock with a period of {} s at the largest drift",
+                significant(period, 2)
+            ),
+            "a stack of loose parts yields at every level and rocks more slowly",
+        )
     } else {
-        "would not return from the largest drift".to_owned()
+        (
+            "would overturn at the largest drift, so it has no period there".to_owned(),
+            "at smaller drifts, a stack of loose parts rocks more slowly than such a block, because it yields at \
+             every level",
+        )
     };
     let measured = match (&drift.swings[..], rocking.widest()) {
         (_, None) => "it made no full swing".to_owned(),
@@ -95,7 +105,7 @@ fn words(rocking: &Rocking) -> String {
         "A stack has no fixed natural period: the farther it rocks, the longer its period, so the shaking \
          to which it responds changes as it sways. While the stack stood, its top drifted by up to {reached} \
          relative to its foot, and {measured}. A rigid block with the mass and the foot width of the stack {rigid} (Housner \
-         1963: T = 4/p · arcosh(1/(1 − θ₀/α)) with p = {} 1/s and α = {} rad); a stack of loose parts yields at every level and rocks more slowly.",
+         1963: T = 4/p · arcosh(1/(1 − θ₀/α)) with p = {} 1/s and α = {} rad); {loose}.",
         significant(block.frequency, 3),
         significant(block.slenderness, 3),
     )

@@ -16,31 +16,31 @@ impl Remedy {
         let sentence = match (&self.height, &self.straps) {
             (Some(height), Some(straps)) if share(height) == share(straps) => {
                 format!(
-                    "{}, or {}, would have stood in {}",
+                    "a stack of {}, or of {}, would have stood in {}",
                     name(height),
                     name(straps),
                     share(height)
                 )
             }
             (Some(height), Some(straps)) => format!(
-                "{} would have stood in {}, and {} in {}",
+                "a stack of {} would have stood in {}, and one of {} in {}",
                 name(height),
                 share(height),
                 name(straps),
                 share(straps)
             ),
             (Some(height), None) if self.complete && any("straps") => format!(
-                "{} would have stood in {}; straps tightened to {straps} would not suffice",
+                "a stack of {} would have stood in {}; straps tightened to {straps} would not have been enough",
                 name(height),
                 share(height)
             ),
             (None, Some(straps)) if any("height") => format!(
-                "{} would have stood in {}; fewer levels without straps would not suffice",
+                "a stack of {} would have stood in {}; fewer levels without straps would not have been enough",
                 name(straps),
                 share(straps)
             ),
             (Some(one), None) | (None, Some(one)) => {
-                format!("{} would have stood in {}", name(one), share(one))
+                format!("a stack of {} would have stood in {}", name(one), share(one))
             }
             (None, None) if !self.complete => {
                 return "The changes that would have kept the stack up are not known, because the search was stopped."
@@ -134,7 +134,7 @@ impl Remedy {
         };
         let choice = match self.candidates {
             0 | 1 => String::new(),
-            many => format!(", allowing for the choice among {many} changes"),
+            many => format!(", corrected for trying up to {many} changes"),
         };
         format!(" At most {most} would fall (95 % confidence{choice}).")
     }
@@ -239,16 +239,24 @@ impl Remedy {
     }
 }
 
-/// Returns the name of a tried change, such as "three levels" or "five levels strapped together at 4 kN".
+/// Returns the name of a tried change, such as "three levels" or "five levels held together by straps
+/// tightened to 4 kN".
 pub(super) fn name(tried: &Tried) -> String {
     let levels = counted(tried.levels, "level");
     match tried.pretension {
         None => levels,
         Some(pretension) if tried.levels == 1 => {
-            format!("barrels strapped to their racks at {} kN", 1e-3 * pretension)
+            format!(
+                "one level whose barrels are held to their racks by straps tightened to {} kN",
+                1e-3 * pretension
+            )
         }
         Some(pretension) => {
-            format!("{} levels strapped together at {} kN", number(tried.levels), 1e-3 * pretension)
+            format!(
+                "{} levels held together by straps tightened to {} kN",
+                number(tried.levels),
+                1e-3 * pretension
+            )
         }
     }
 }

@@ -205,11 +205,13 @@ fn counts(spread: &Spread, noun: &str) -> Option<String> {
     let Spread { variants, collapsed, interval, .. } = spread;
     let [low, high] = interval.map(percent);
     spread.share?;
+    let bound = |words: &str, share: &str| format!("95 % confidence: at {words} {share}");
+    let [least, most] = [bound("least", &low), bound("most", &high)];
     Some(match *collapsed {
-        0 if *variants == 1 => format!("the one variant stands (at most {high} fall)"),
-        0 => format!("none of {variants}{noun} falls (at most {high})"),
-        1 if *variants == 1 => format!("the one variant falls (at least {low} fall)"),
-        all if all == *variants => format!("all {all}{noun} fall (at least {low})"),
+        0 if *variants == 1 => format!("the one variant stands ({most} fall)"),
+        0 => format!("none of {variants}{noun} falls ({most})"),
+        1 if *variants == 1 => format!("the one variant falls ({least} fall)"),
+        all if all == *variants => format!("all {all}{noun} fall ({least})"),
         one => {
             let fall = if one == 1 { "falls" } else { "fall" };
             format!("{one} of {variants}{noun} {fall} ({}–{high})", low.trim_end_matches(" %"))
@@ -452,7 +454,10 @@ mod tests {
     fn one_plane_has_its_counts_and_its_course() {
         let course = "The first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.";
         let cases = [
-            (64, "Falls. Shaken across the barrels, all 64 variants fall (at least 94 %)."),
+            (
+                64,
+                "Falls. Shaken across the barrels, all 64 variants fall (95 % confidence: at least 94 %).",
+            ),
             (61, "Falls. Shaken across the barrels, 61 of 64 variants fall (87–98 %)."),
             (50, "Not safe. Shaken across the barrels, 50 of 64 variants fall (67–86 %)."),
             (10, "Not safe. Shaken across the barrels, 10 of 64 variants fall (9–26 %)."),
@@ -465,19 +470,30 @@ mod tests {
             assert_eq!(of(64, collapsed), format!("{sentences} {course}"));
         }
         let none = "Shaken across the barrels, none of";
-        assert_eq!(of(64, 0), format!("Stands. {none} 64 variants falls (at most 6 %)."));
-        assert_eq!(of(8, 0), format!("Stands. {none} 8 variants falls (at most 32 %)."));
+        assert_eq!(
+            of(64, 0),
+            format!("Stands. {none} 64 variants falls (95 % confidence: at most 6 %).")
+        );
+        assert_eq!(
+            of(8, 0),
+            format!("Stands. {none} 8 variants falls (95 % confidence: at most 32 %).")
+        );
         let few = format!(
-            "Too few variants to conclude that the stack stands. {none} 7 variants falls (at most 35 %)."
+            "Too few variants to conclude that the stack stands. {none} 7 variants falls (95 % confidence: at most \
+             35 %)."
         );
         assert_eq!(of(7, 0), few);
         let one = "Shaken across the barrels, the one variant";
-        assert!(of(1, 0).ends_with(&format!("{one} stands (at most 79 % fall).")), "{}", of(1, 0));
-        assert!(of(1, 1).contains(&format!("{one} falls (at least 21 % fall).")), "{}", of(1, 1));
+        let [stands, falls] = [of(1, 0), of(1, 1)];
+        let most = format!("{one} stands (95 % confidence: at most 79 % fall).");
+        assert!(stands.ends_with(&most), "{stands}");
+        let least = format!("{one} falls (95 % confidence: at least 21 % fall).");
+        assert!(falls.contains(&least), "{falls}");
         let unknown = "No verdict. Shaken across the barrels, no variant could be judged.";
         assert_eq!(of(0, 0), unknown);
         let in_space = headline_in_space(&spread(64, 64));
-        assert_eq!(in_space, format!("Falls. All 64 variants fall (at least 94 %). {course}"));
+        let all = "Falls. All 64 variants fall (95 % confidence: at least 94 %).";
+        assert_eq!(in_space, format!("{all} {course}"));
     }
 
     #[test]
@@ -565,12 +581,13 @@ mod tests {
         );
         assert_eq!(
             both(0, 0),
-            "Stands. Shaken across the barrels, none of 64 variants falls (at most 6 %); along them, none of 64 falls (at \
-             most 6 %)."
+            "Stands. Shaken across the barrels, none of 64 variants falls (95 % confidence: at most 6 %); along them, \
+             none of 64 falls (95 % confidence: at most 6 %)."
         );
         assert_eq!(
             both(64, 1),
-            "Falls. Shaken across the barrels, all 64 variants fall (at least 94 %); along them, 1 of 64 falls (0.3–8 %)."
+            "Falls. Shaken across the barrels, all 64 variants fall (95 % confidence: at least 94 %); along them, 1 of \
+             64 falls (0.3–8 %)."
         );
         assert!(
             both(3, 20).starts_with(
@@ -581,7 +598,8 @@ mod tests {
             headline(&[(View::Transverse, &spread(0, 0)), (View::Longitudinal, &spread(64, 64))]);
         assert_eq!(
             none,
-            "Falls. Shaken along the barrels, all 64 variants fall (at least 94 %); across them, no variant could be judged."
+            "Falls. Shaken along the barrels, all 64 variants fall (95 % confidence: at least 94 %); across them, no \
+             variant could be judged."
         );
         let none =
             headline(&[(View::Transverse, &spread(0, 0)), (View::Longitudinal, &spread(64, 0))]);
@@ -598,12 +616,16 @@ mod tests {
                        their stated capacity.";
         let said = headline(&[(View::Transverse, &one)]);
         assert!(
-            said.ends_with(&format!("(at most 6 %). Across the barrels, in {crushed}")),
+            said.ends_with(&format!(
+                "(95 % confidence: at most 6 %). Across the barrels, in {crushed}"
+            )),
             "{said}"
         );
         let both = headline(&[(View::Transverse, &spread(64, 0)), (View::Longitudinal, &one)]);
         assert!(
-            both.ends_with(&format!("(at most 6 %). Along the barrels, in {crushed}")),
+            both.ends_with(&format!(
+                "(95 % confidence: at most 6 %). Along the barrels, in {crushed}"
+            )),
             "{both}"
         );
     }

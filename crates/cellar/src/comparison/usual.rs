@@ -31,7 +31,10 @@ pub struct Usual {
 pub fn usual(cellar: &Cellar) -> Vec<Usual> {
     let (spacing, wider) = spaced(cellar);
     let pretension = PRETENSIONS[PRETENSIONS.len() - 1];
-    let strapped = format!("all levels strapped together at {} kN", shortest(1e-3 * pretension));
+    let strapped = format!(
+        "all levels held together by straps tightened to {} kN",
+        shortest(1e-3 * pretension)
+    );
     let all = [
         (spacing, wider),
         (strapped, strapped_at(cellar, pretension).and_then(|by| fitting(cellar, &by))),

@@ -374,7 +374,7 @@ fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
     let table = Table::load(&args.file)?;
     let progress = Progress::new(true);
     let found = response::response(&scenario, &table, &parameters, until, &|done| {
-        progress.searched(done as u64, "simulations")
+        progress.searched(done as u64, "simulation", "simulations")
     });
     drop(progress);
     found.map_err(|error| placed(error, &scenario, &scenario_args))

@@ -158,8 +158,9 @@ pub(super) fn remedied(
     show: bool,
 ) -> Result<(), RunFailure> {
     let progress = Progress::new(show);
-    let mut found =
-        answer.remedy(&|done| progress.searched(done as u64, "runs of changed stacks"))?;
+    let mut found = answer.remedy(&|done| {
+        progress.searched(done as u64, "run of a changed stack", "runs of changed stacks")
+    })?;
     if let Some(found) = &mut found {
         found.comparison = command.against(found);
     }

@@ -313,9 +313,9 @@ class FreeInterfaceFields(TypedDict, total=False):
     default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
-    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack whose
-    constants are stated per seat and whose `damping` is not given, the restitution that the catalog gives for
-    the seats of the rack. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
+    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: the restitution
+    that the catalog gives for the seats of the rack, if the constants of the stack are stated per seat and
+    `damping` is not given. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
     """Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or
@@ -331,7 +331,9 @@ class FreeInterfaceFields(TypedDict, total=False):
     reference_speed: Quantity
     """Impact speed for which the restitution holds. Default: required if `restitution` is given."""
     speed: Quantity
-    """Impact speed below which the contact also damps, so that bodies come to rest. Default: 0.1 m/s."""
+    """Impact speed below which the contact damps in proportion to the speed, so that bodies come to rest. Default:
+    0.1 m/s.
+    """
 
 
 class FrictionFields(TypedDict, total=False):
@@ -343,7 +345,7 @@ class FrictionFields(TypedDict, total=False):
     """
     law: Union[Literal["coulomb"], Literal["regularized"], Literal["none"]]
     static_coefficient: Union[float, Quantity]
-    """Static coefficient of friction, not below the kinetic one. Default: `coefficient`."""
+    """Static coefficient of friction, not below the kinetic one. Default: the kinetic coefficient."""
     tangential_damping_ratio: Union[float, Quantity]
     """Ratio of the damping of the tangential spring to the normal damping. Default: 1.0."""
     tangential_stiffness_ratio: Union[float, Quantity]
@@ -398,9 +400,9 @@ class ImpactFields(TypedDict, total=False):
     default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
-    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack whose
-    constants are stated per seat and whose `damping` is not given, the restitution that the catalog gives for
-    the seats of the rack. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
+    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: the restitution
+    that the catalog gives for the seats of the rack, if the constants of the stack are stated per seat and
+    `damping` is not given. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
     """Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or
@@ -414,7 +416,9 @@ class ImpactFields(TypedDict, total=False):
     reference_speed: Quantity
     """Impact speed for which the restitution holds. Default: required if `restitution` is given."""
     speed: Quantity
-    """Impact speed below which the contact also damps, so that bodies come to rest. Default: 0.1 m/s."""
+    """Impact speed below which the contact damps in proportion to the speed, so that bodies come to rest. Default:
+    0.1 m/s.
+    """
 
 
 class ImperfectionsFields(TypedDict, total=False):
@@ -434,7 +438,7 @@ class ImperfectionsFields(TypedDict, total=False):
     placement: Quantity
     """Largest offset, to either side, of every rack on its supports and of every barrel in its cradle. The offset
     is uniformly distributed and drawn for each body. The default is an assumption: forklifts do not place racks
-    and barrels more precisely. Default: 1 mm.
+    and barrels more precisely than this. Default: 1 mm.
     """
     seed: int
     """Seed of the random numbers from which the imperfections and the unknown constants of the variants are drawn.
@@ -481,9 +485,9 @@ class InterfaceFields(TypedDict, total=False):
     default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
-    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack whose
-    constants are stated per seat and whose `damping` is not given, the restitution that the catalog gives for
-    the seats of the rack. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
+    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: the restitution
+    that the catalog gives for the seats of the rack, if the constants of the stack are stated per seat and
+    `damping` is not given. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
     """Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or
@@ -497,7 +501,9 @@ class InterfaceFields(TypedDict, total=False):
     reference_speed: Quantity
     """Impact speed for which the restitution holds. Default: required if `restitution` is given."""
     speed: Quantity
-    """Impact speed below which the contact also damps, so that bodies come to rest. Default: 0.1 m/s."""
+    """Impact speed below which the contact damps in proportion to the speed, so that bodies come to rest. Default:
+    0.1 m/s.
+    """
 
 
 InterfacesFields = TypedDict(
@@ -532,7 +538,7 @@ class IsolatorFields(TypedDict, total=False):
     """
     friction: Union[float, Quantity]
     """Friction coefficient of the platform on its path: 0.005 to 0.02 for balls and rollers, 0.1 to 0.2 for
-    sheets, 0.6 if seized. Default: 0.01.
+    low-friction sheets, 0.6 if seized. Default: 0.01.
     """
     mass: Quantity
     """Mass of a platform. The default is an assumption. Default: 60 kg."""
@@ -648,9 +654,9 @@ class OutcomeFields(TypedDict, total=False):
     """The stack counts as overturned if its bottom rack is inclined by more than this angle. Default: 30 deg."""
     rack_slide_ratio: Union[float, Quantity]
     """A rack has left the barrels below when its displacement on them exceeds this fraction of the largest
-    displacement at which they still carry it. Across the barrels, friction cannot hold the rack on their curved
-    sides beyond this displacement; along the barrels, the rail of the rack then passes their ends. Default:
-    1.0.
+    displacement at which they still carry it. Beyond that displacement, friction cannot hold a rack that moves
+    across the barrels on their curved sides, and a rail of a rack that moves along the barrels lies beyond
+    their ends. Default: 1.0.
     """
     rocking_angle: Quantity
     """A level counts as tipped over if its rack is inclined by more than this angle. Default: 20 deg."""

@@ -59,7 +59,7 @@ pub(super) fn about_all(levels: u32) -> impl Iterator<Item = (String, Vec<String
             format!("pretension=\"{pretension} kN\""),
         ];
         let changes = fields.iter().map(|field| format!("stack.strap.{field}")).collect();
-        (format!("all levels strapped together at {pretension} kN"), changes)
+        (format!("all levels held together by straps tightened to {pretension} kN"), changes)
     })
 }
 

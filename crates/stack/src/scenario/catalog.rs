@@ -62,7 +62,7 @@ pub const BARRELS: &[CatalogBarrel] = &[
         stave_thickness: 0.027,
         empty_mass: 46.0,
         capacity: 0.225,
-        source: "Bordeaux export barrel; dimensions from Dimensions of a Bordeaux Barrel (dimensionsguide.com); mass \
+        source: "Bordeaux export barrel; dimensions from “Dimensions of a Bordeaux Barrel” (dimensionsguide.com); mass \
                  of the A.P. John 225 L barrel (apjohn.com.au, technical specifications)",
     },
     CatalogBarrel {

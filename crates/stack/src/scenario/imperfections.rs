@@ -29,7 +29,7 @@ section! {
     drawn: bool = Kind::Flag, Default::Value("true");
     /// Largest offset, to either side, of every rack on its supports and of every barrel in its cradle. The offset is
     /// uniformly distributed and drawn for each body. The default is an assumption: forklifts do not place racks and
-    /// barrels more precisely.
+    /// barrels more precisely than this.
     placement: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 0.02)), Default::Value("\"1 mm\"");
     /// Standard deviation of the mass of every barrel and rack, as a fraction of that mass. The mass is normally

@@ -144,8 +144,9 @@ section! {
     fall_drop: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"0.2 m\"");
     /// A rack has left the barrels below when its displacement on them exceeds this fraction of the largest
-    /// displacement at which they still carry it. Across the barrels, friction cannot hold the rack on their curved
-    /// sides beyond this displacement; along the barrels, the rail of the rack then passes their ends.
+    /// displacement at which they still carry it. Beyond that displacement, friction cannot hold a rack that moves
+    /// across the barrels on their curved sides, and a rail of a rack that moves along the barrels lies beyond their
+    /// ends.
     rack_slide_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("1.0");
     /// A level counts as tipped over if its rack is inclined by more than this angle.
     rocking_angle: f64 =

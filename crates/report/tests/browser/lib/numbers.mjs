@@ -81,8 +81,9 @@ export async function ofRun(page, summary) {
     const counts = shown.headline.match(new RegExp(`${said}\\D[^(]*\\(([^)]*)\\)`));
     demand(counts, `the headline does not state ${collapsed} of ${variants}: ${shown.headline}`);
     // If all or none fall, only the other end of the interval is stated.
-    const bounds = counts[1].includes("at least") ? [interval[0]] : counts[1].includes("at most") ? [interval[1]] : interval;
-    reading.are("interval in the headline", counts[1], percents(bounds));
+    const stated = counts[1].replace("95 % confidence: ", "");
+    const bounds = stated.includes("at least") ? [interval[0]] : stated.includes("at most") ? [interval[1]] : interval;
+    reading.are("interval in the headline", stated, percents(bounds));
   }
   if (spreads.length > 0) {
     const [table] = tablesOf(shown, "Range");

@@ -88,8 +88,8 @@ const RESTITUTION: Field = Field::new(
     "restitution",
     Kind::Number(Range::up_to(1.0)),
     Default::Derived(
-        "in a stack whose constants are stated per seat and whose `damping` is not given, the restitution that the \
-         catalog gives for the seats of the rack",
+        "the restitution that the catalog gives for the seats of the rack, if the constants of the stack are stated \
+         per seat and `damping` is not given",
     ),
     "Ratio of normal speeds after and before an impact, stated instead of the damping.",
 );
@@ -164,7 +164,7 @@ const LAWS: Variants = Variants {
             fields: &fields! {
                 /// Ratio of normal speeds after and before an impact.
                 restitution = Kind::Number(Range::up_to(1.0)), Default::Value("0.3");
-                /// Impact speed below which the contact also damps, so that bodies come to rest.
+                /// Impact speed below which the contact damps in proportion to the speed, so that bodies come to rest.
                 speed = Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE), Default::Value("\"0.1 m/s\"");
             },
         },
@@ -245,7 +245,7 @@ table! {
         /// Elastic and damped tangential spring (stick) up to the static limit, then sliding.
         "coulomb" with [COEFFICIENT_FIELD] {
             /// Static coefficient of friction, not below the kinetic one.
-            static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("`coefficient`");
+            static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("the kinetic coefficient");
             /// Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, friction
             /// reverses sooner, but the time step must be smaller.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
