@@ -6,7 +6,7 @@ use super::{BoundaryNode, Facing, Gap, Nearest, Piece, Section, nodes_along};
 use crate::body::Round;
 use crate::lanewise;
 use crate::math;
-use crate::real::Real;
+use crate::real::{Mask as _, Real};
 use crate::space::{Linear, Planar, Vec2};
 
 /// Distance (m) outside a side up to which a node still counts as touching, for bodies that are flush: about a
@@ -84,6 +84,10 @@ pub enum PolygonError {
     },
 }
 
+/// Distance (m) above a side, and from its ends, at which neither rounding errors nor the slack of the ends of sides can
+/// make another side the nearest.
+const CLEAR: f64 = 1e-4;
+
 impl<R: Real> Polygon<R> {
     /// Returns the number of sides.
     pub(crate) fn side_count(&self) -> usize {
@@ -99,6 +103,9 @@ impl<R: Real> Polygon<R> {
     #[inline(always)]
     pub(super) fn nearest(&self, point: Vec2<R>, slack: R) -> Nearest<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
+        if let Some(over) = self.over_one_side(point) {
+            return over;
+        }
         // Inside: the nearest side decides. Outside: the nearest point of any side.
         let mut deepest = R::splat(f64::NEG_INFINITY);
         let mut deepest_normal = Vec2::new(zero, one);
@@ -139,6 +146,36 @@ impl<R: Real> Polygon<R> {
         let round = outside & at_corner;
         let to_end = R::select(round, R::splat(f64::INFINITY), to_end);
         Nearest { gap, round, to_end, toward_end, core }
+    }
+
+    /// Returns the gap and the nearest piece of a point (m) that lies, in all lanes, outside of one side and clear of its
+    /// ends; `None` for any other point. The result has the same bits as that of the search among all sides, since the
+    /// polygon is convex.
+    #[inline(always)]
+    fn over_one_side(&self, point: Vec2<R>) -> Option<Nearest<Planar<R>>> {
+        let (zero, clear) = (R::zero(), R::splat(CLEAR));
+        if self.sides.len() == 2 {
+            return None;
+        }
+        for side in &self.sides {
+            let offset = point - side.middle;
+            let (height, along) = (offset.dot(side.outward), offset.dot(side.along));
+            let over = clear.lt(height) & (along.abs() + clear).lt(side.half_length);
+            if over.all() {
+                let apart = side.outward * height;
+                let distance = apart.dot(apart).sqrt();
+                let normal = apart * (R::splat(1.0) / distance);
+                let gap = Gap { distance: distance - self.corner_radius, normal };
+                return Some(Nearest {
+                    gap,
+                    round: R::Mask::default(),
+                    to_end: side.half_length - along.abs(),
+                    toward_end: Vec2::select(along.lt(zero), -side.along, side.along),
+                    core: gap.distance + self.corner_radius,
+                });
+            }
+        }
+        None
     }
 
     /// Returns the side on which a boundary point of another body bears, if the point lies inside the core; otherwise

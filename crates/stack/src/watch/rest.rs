@@ -36,6 +36,10 @@ const CALM: f64 = 0.02;
 /// friction coefficient.
 const CALM_OF_FRICTION: f64 = 0.1;
 
+/// Share of the largest kinetic energy of a stack above which the stack counts as lively: it still sways at more than
+/// half of its largest speed.
+pub const LIVELY: f64 = 0.25;
+
 /// Largest height of the center of a barrel that counts as lying on the floor, divided by the radius of the barrel.
 pub const ON_FLOOR: f64 = 1.05;
 
@@ -104,21 +108,26 @@ pub struct Rest<R: Real = f64> {
     fading: PerLane<Option<Arc<Fading>>>,
     /// Time (s) of the next test whether the rest of the motion is faint; infinite for a run without `fading`.
     due: R,
+    /// Twice the largest kinetic energy (J) of all bodies relative to the ground, in all samples.
+    liveliest: R,
+    /// Time (s) of the last sample in which the stack was [lively](LIVELY).
+    lively: R,
 }
 
 /// A free body whose motion is observed.
 #[derive(Clone, Debug)]
 struct Mover<R: Real> {
     body: BodyId,
+    mass: R,
     /// Moment of inertia divided by the mass (m²).
     inertia: R,
     /// Height (m) of the center above the ground up to which the body counts as a barrel on the floor.
     floor: R,
 }
 
-lanewise!(struct Mover<R> { body, inertia, floor });
+lanewise!(struct Mover<R> { body, mass, inertia, floor });
 lanewise!(struct Rest<R> {
-    still_from, calm_from, slow, hold, bodies, moved, fading, due
+    still_from, calm_from, slow, hold, bodies, moved, fading, due, liveliest, lively
 });
 
 impl Rest {
@@ -130,6 +139,7 @@ impl Rest {
             let of = &assembly.model.bodies()[body];
             (of.motion == Motion::Free).then(|| Mover {
                 body,
+                mass: of.mass,
                 inertia: of.inertia / of.mass,
                 floor: match part.kind {
                     PartKind::Barrel => ON_FLOOR * part.size,
@@ -157,6 +167,8 @@ impl Rest {
             moved: 0.0,
             due: if fading.is_some() { 0.0 } else { f64::INFINITY },
             fading: PerLane::single(fading),
+            liveliest: 0.0,
+            lively: 0.0,
         }
     }
 }
@@ -220,22 +232,33 @@ impl<R: Real> Rest<R> {
         }
         self.moved = R::select(moves, state.time, self.moved);
         let due = self.due.le(state.time);
-        let safe =
-            if due.any() { self.safe(state.time, due, strained) } else { R::Mask::default() };
+        let safe = if due.any() { self.safe(state, due, strained) } else { R::Mask::default() };
         (self.moved + self.hold).le(state.time) | (safe & !collapsed)
     }
 
     /// Tests the lanes in `due` and returns those in which the rest of the motion is faint, compared with what the stack
-    /// has withstood since it was last close to losing a seat.
-    fn safe(&mut self, time: R, due: R::Mask, strained: R) -> R::Mask {
-        let held = (strained + self.hold).le(time);
+    /// has withstood since it was last lively or close to losing a seat.
+    fn safe(&mut self, state: &State<Planar<R>>, due: R::Mask, strained: R) -> R::Mask {
+        let ground = state.twists[Assembly::GROUND].linear;
+        let mut energy = R::zero();
+        for body in &self.bodies {
+            let twist = state.twists[body.body];
+            let velocity = twist.linear - ground;
+            let turning = body.inertia * twist.angular * twist.angular;
+            energy += body.mass * (velocity.dot(velocity) + turning);
+        }
+        let lively = due & (R::splat(LIVELY) * self.liveliest).lt(energy);
+        self.lively = R::select(lively, state.time, self.lively);
+        self.liveliest = R::select(due, self.liveliest.max(energy), self.liveliest);
+        let since = self.lively.max(strained);
+        let held = (since + self.hold).le(state.time);
         R::Mask::from_lanes(|lane| {
             let Some(fading) = self.fading[lane].as_ref().filter(|_| due.lane(lane)) else {
                 return false;
             };
-            let now = time.lane(lane);
+            let now = state.time.lane(lane);
             self.due = self.due.with_lane(lane, now + fading.interval());
-            held.lane(lane) && fading.faint_from(strained.lane(lane)) <= now
+            held.lane(lane) && fading.faint_from(since.lane(lane)) <= now
         })
     }
 

@@ -393,9 +393,15 @@ impl<R: Real> StressWatch<R> {
             }
             for (number, side) in pair.sides.iter().enumerate() {
                 let at = self.first[contact.pair] + number * pair.count + contact.node as usize;
-                let point = pair.in_body(*side, contact.point, state, scratch);
                 let bounds = &mut self.bounds[at];
                 let presses = self.watched & contact.touching;
+                let anywhere = matches!(side.range, CellRange::Everywhere);
+                let point = if anywhere && (presses & !bounds.above).any() || !anywhere {
+                    pair.in_body(*side, contact.point, state, scratch)
+                } else {
+                    // Not needed: the contact loads the point of the rack that it has loaded before.
+                    contact.point
+                };
                 let here = presses & bounds.hold(side.range, point);
                 let more = here & bounds.most.lt(contact.normal_force);
                 if more.any() {
