@@ -76,7 +76,7 @@ section! {
     /// Shape of the path on which the platform moves.
     path: Path = Kind::Choice(names::<Path>), Default::Value("\"none\"");
     /// Friction coefficient of the platform on its path: 0.005 to 0.02 for balls and rollers, 0.1 to 0.2 for
-    /// low-friction sheets, 0.6 if seized.
+    /// sliding sheets, 0.6 if seized.
     friction: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.01");
     /// Radius of the dishes, which is the length of the equivalent pendulum; not used on a flat path. The default is an
     /// assumption; it gives a period of 2 s.
