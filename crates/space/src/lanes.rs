@@ -110,7 +110,8 @@ impl<'a, R: Real> lanes::Batch<'a, Spatial<R>> for Batch<'a> {
         let (index, prepared) = self.group.get(self.next).filter(|_| !self.interrupted)?;
         self.next += 1;
         let fixed = &*prepared.fixed;
-        let (watch, share) = (prepared.watch.clone(), Share::default());
+        let watch = prepared.watch.clone();
+        let share = Share::new(fixed.settings.end_time, fixed.ground.end());
         let state = prepared.state.clone();
         let wrenches = vec![Wrench::default(); state.poses.len()];
         self.lanes[lane] = Some(Lane { index: *index, prepared, watch, state, wrenches, share });
@@ -138,8 +139,8 @@ impl<'a, R: Real> lanes::Batch<'a, Spatial<R>> for Batch<'a> {
         if self.steps == PATIENCE {
             self.steps = 0;
             for (at, lane) in self.lanes.iter_mut().enumerate() {
-                if let Some(Lane { prepared, share, .. }) = lane {
-                    share.reached(state.time.lane(at) / prepared.fixed.settings.end_time);
+                if let Some(Lane { share, .. }) = lane {
+                    share.reached(state.time.lane(at));
                 }
             }
             if (self.stop)() {
@@ -176,7 +177,7 @@ impl<'a, R: Real> lanes::Batch<'a, Spatial<R>> for Batch<'a> {
             (Ok(Finish::Stopped), Some(ending)) => ending,
             (Ok(Finish::Stopped | Finish::EndTime), _) => Ending::of_time(&fixed.scenario),
         };
-        share.end(end.time / fixed.settings.end_time);
+        share.end(end.time);
         // Evaluations are counted for all lanes together, so the result of a single case states only its steps.
         let work = Work { steps: end.steps, ..Work::default() };
         let ended = end.finish.map(|_| Ended { energy: end.energy, steps: end.steps });

@@ -287,15 +287,16 @@ fn run_chunk<T>(
     }
     stage.shake(items.len());
     for (at, prepared) in lanes::run(in_lanes, ready, finished, stop) {
-        let mut share = Share::default();
+        let fixed = &prepared.fixed;
+        let mut share = Share::new(fixed.settings.end_time, fixed.ground.end());
         let run = prepared.start().run_watched(&mut |progress| {
-            share.reached(progress.time / progress.end_time);
+            share.reached(progress.time);
             if stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         if run.ending == Ending::Interrupted {
             return;
         }
-        share.end(run.end_time / run.simulation.end_time);
+        share.end(run.end_time);
         finished(at, Case::of(&run));
     }
 }

@@ -121,6 +121,7 @@ impl<'a, R: Real> lanes::Batch<'a, Planar<R>> for Batch<'a, '_, R> {
     fn start(&mut self, lane: usize, state: &State<Planar>, scratch: &Scratch<Planar>) {
         let Some((run, standing)) = self.standing(lane) else { return };
         let end = run.end(standing);
+        let share = Share::new(run.end_time, run.case.ground.end());
         let rest = &standing.state;
         let mut fates = Fates::new(&standing.assembly, rest, thresholds(&run.case.scenario));
         fates.observe(state, scratch);
@@ -133,7 +134,7 @@ impl<'a, R: Real> lanes::Batch<'a, Planar<R>> for Batch<'a, '_, R> {
         trail.see_state(state);
         self.due.put(lane, &trail.due());
         self.trails[lane] = trail;
-        self.shares[lane] = Some(Share::default());
+        self.shares[lane] = Some(share);
         self.stresses.begin(lane, stresses);
         self.joints.get_or_insert_with(|| Joints::in_all(&joints)).put(lane, &joints);
         self.fates.get_or_insert_with(|| Fates::in_all(&fates)).put(lane, &fates);
@@ -148,7 +149,7 @@ impl<'a, R: Real> lanes::Batch<'a, Planar<R>> for Batch<'a, '_, R> {
             self.steps = 0;
             for (lane, share) in self.shares.iter_mut().enumerate() {
                 if let Some(share) = share {
-                    share.reached(state.time.lane(lane) / self.group[self.runs[lane]].end_time);
+                    share.reached(state.time.lane(lane));
                 }
             }
             if (self.audience.stop)() {
@@ -207,9 +208,9 @@ impl<'a, R: Real> lanes::Batch<'a, Planar<R>> for Batch<'a, '_, R> {
         let verdict = conclude(assembly, ground, &fates, ended, end.time, ending);
         let observed = Observed { fates: &fates, stresses: &stresses, joints: &joints, trail };
         let result = CaseResult::of(assembly, ground, observed, verdict, end.time);
-        let (index, reached) = (run.index, end.time / run.end_time);
+        let index = run.index;
         if let Some(share) = self.shares[lane].take() {
-            share.end(reached);
+            share.end(end.time);
         }
         (self.audience.on_case)(&result);
         self.results.push((index, result));

@@ -39,8 +39,7 @@ pub(super) fn run(
             end: run.end(standing),
             stop: audience.stop,
             next_ask: 0.0,
-            share: Share::default(),
-            end_time: run.end_time,
+            share: Share::new(run.end_time, run.case.ground.end()),
             ending: None,
         };
         let ground = &*run.case.ground;
@@ -54,8 +53,8 @@ pub(super) fn run(
         let verdict = conclude(&standing.assembly, ground, &watch.fates, ended, state.time, ending);
         let stresses = watch.stresses.finish(0);
         watch.trail.see_state(&state);
-        let Watch { fates, joints, trail, share, end_time, .. } = watch;
-        share.end(state.time / end_time);
+        let Watch { fates, joints, trail, share, .. } = watch;
+        share.end(state.time);
         let observed = Observed { fates: &fates, stresses: &stresses, joints: &joints, trail };
         let result = CaseResult::of(&standing.assembly, ground, observed, verdict, state.time);
         (audience.on_case)(&result);
@@ -76,7 +75,6 @@ struct Watch<'a> {
     /// Simulated time (s) of the next poll of the stop request.
     next_ask: f64,
     share: Share,
-    end_time: f64,
     ending: Option<Ending>,
 }
 
@@ -102,7 +100,7 @@ impl Observer<Planar> for Watch<'_> {
         }
         if state.time >= self.next_ask {
             self.next_ask = state.time + 0.05;
-            self.share.reached(state.time / self.end_time);
+            self.share.reached(state.time);
             if (self.stop)() {
                 self.ending = Some(Ending::Interrupted);
                 return ControlFlow::Break(());

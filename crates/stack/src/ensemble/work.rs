@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Resolution of the progress counters: a case simulated to its maximum duration counts as this many units.
+/// Resolution of the progress counters: a case simulated for its usual duration counts as this many units.
 const PARTS: f64 = 1e6;
 
 static DONE: AtomicU64 = AtomicU64::new(0);
@@ -19,14 +19,15 @@ static EPOCH: LazyLock<Instant> = LazyLock::new(Instant::now);
 
 /// Progress of all cases of this process.
 ///
-/// The progress of a case is its simulated time divided by its maximum duration.
+/// The progress of a case is its simulated time divided by its usual duration, but at most 1. The usual duration is that
+/// of the motion: few cases need the time after it that they may take to come to rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Sum of the progress of all cases, finished or not, since the process began.
     pub done: f64,
     /// Sum of the progress of the cases that are running.
     pub under_way: f64,
-    /// Number of cases that ended before their maximum duration, since the process began.
+    /// Number of cases that ended before their usual duration, since the process began.
     pub early: f64,
     /// Number of cases whose stack has been brought to rest, since the process began.
     pub at_rest: f64,
@@ -134,23 +135,35 @@ fn now() -> i64 {
 }
 
 /// Guard of a running case. The progress of the case counts as under way until the guard is dropped.
-#[derive(Debug, Default)]
-pub struct Share(u64);
+#[derive(Debug)]
+pub struct Share {
+    /// Usual duration (s) of the case.
+    usual: f64,
+    /// Reported progress.
+    parts: u64,
+}
 
 impl Share {
-    /// Reports the fraction of the case that has been simulated, 0 to 1.
-    pub fn reached(&mut self, share: f64) {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e6")]
-        let now = ((share.clamp(0.0, 1.0) * PARTS) as u64).max(self.0);
-        DONE.fetch_add(now - self.0, Ordering::Relaxed);
-        UNDER_WAY.fetch_add(signed(now) - signed(self.0), Ordering::Relaxed);
-        self.0 = now;
+    /// Starts a case that ends at `end_time` (s) at the latest and whose motion ends at `motion_end` (s), or at zero
+    /// without a motion.
+    pub fn new(end_time: f64, motion_end: f64) -> Self {
+        let usual = if motion_end > 0.0 { end_time.min(motion_end) } else { end_time };
+        Self { usual, parts: 0 }
     }
 
-    /// Ends the case, of which the fraction `share` (0 to 1) has been simulated.
-    pub fn end(mut self, share: f64) {
-        self.reached(share);
-        if share < 0.99 {
+    /// Reports the simulated time (s) of the case.
+    pub fn reached(&mut self, time: f64) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e6")]
+        let now = (((time / self.usual).clamp(0.0, 1.0) * PARTS) as u64).max(self.parts);
+        DONE.fetch_add(now - self.parts, Ordering::Relaxed);
+        UNDER_WAY.fetch_add(signed(now) - signed(self.parts), Ordering::Relaxed);
+        self.parts = now;
+    }
+
+    /// Ends the case at a simulated time (s).
+    pub fn end(mut self, time: f64) {
+        self.reached(time);
+        if time < 0.99 * self.usual {
             EARLY.fetch_add(1, Ordering::Relaxed);
         }
     }
@@ -158,7 +171,7 @@ impl Share {
 
 impl Drop for Share {
     fn drop(&mut self) {
-        UNDER_WAY.fetch_sub(signed(self.0), Ordering::Relaxed);
+        UNDER_WAY.fetch_sub(signed(self.parts), Ordering::Relaxed);
     }
 }
 
