@@ -44,7 +44,7 @@ pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) ->
     }
 }
 
-/// Returns a sentence with the number of published results that agree, that are within a wider band, and that differ.
+/// Returns a sentence that says how many published results agree, how many lie within a wider band, and how many differ.
 pub(super) fn headline(rows: &[Comparison]) -> String {
     let count = |agreement| rows.iter().filter(|row| row.agreement == agreement).count();
     let compared = rows.len() - count(Agreement::NotCompared);

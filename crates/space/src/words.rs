@@ -83,16 +83,15 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
         let [across, along] = directions.first();
         if across + along > 0 {
             sentences.push(format!(
-                "The first seat is lost across the barrels in {across} of the {} variants that fall, and along the \
-                 barrels in {along}.",
+                "In {across} of the {} variants that fall, a body first leaves its seat across the barrels, and in \
+                 {along} along them.",
                 across + along
             ));
         }
         let [across, along] = directions.debris().map(f64::from);
         if across + along > 0.0 {
             sentences.push(format!(
-                "Of the barrels that fall{}, {} move mainly across the barrels from their position at rest to their \
-                 final position, and {} mainly along the barrels.",
+                "Of the barrels that fall{}, {} end up displaced mainly across the barrels, and {} mainly along them.",
                 summary
                     .ensemble
                     .as_ref()

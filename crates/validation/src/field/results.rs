@@ -225,7 +225,7 @@ impl Results {
         }
     }
 
-    /// Returns the posterior whose `given` equals a name; `None` if there is no such posterior.
+    /// Returns the posterior for the data with this name; `None` if there is none.
     pub fn given(&self, name: &str) -> Option<&Posterior> {
         self.posteriors.iter().find(|one| one.given == name)
     }

@@ -209,7 +209,9 @@ fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
     after.channels.clear();
     for (channel, corners) in before.channels.iter().zip(before.noise_corners(&criterion)) {
         let corners = corners.map_err(|error| {
-            anyhow!("--corners auto: {error} with --high-pass and --low-pass in place of --corners")
+            anyhow!(
+                "--corners auto: {error}: give --high-pass and --low-pass in place of --corners"
+            )
         })?;
         let chain = Processing {
             high_pass: Some(corners.high_pass),

@@ -249,9 +249,8 @@ table! {
             /// Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, friction
             /// reverses sooner, but the time step must be smaller.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
-                Default::Derived("for constants per seat, the ratio that the catalog gives for the seats of the rack: \
-                    2 on barrels, whose staves are softer normal to their surface than along it, 2 on posts, and 4 on \
-                    the ground, where tubes bend because they do not lie flat; for other constants, 1");
+                Default::Derived("for constants per seat, the ratio in the catalog: 2 on barrels and on posts, and 4 on \
+                    the ground; for all other constants, 1");
             /// Ratio of the damping of the tangential spring to the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }
