@@ -81,7 +81,7 @@ pub(crate) fn schema(args: &SchemaArgs) -> anyhow::Result<ExitCode> {
     let wanted = name.split('/').next().unwrap_or(name);
     let Some(known) = DOCUMENTS.iter().find(|known| known.name == wanted) else {
         let names: Vec<&str> = DOCUMENTS.iter().map(|known| known.name).collect();
-        bail!("there is no document \"{name}\"; the documents are: {}", names.join(", "));
+        bail!("there is no document \"{name}\"; use one of these names: {}", names.join(", "));
     };
     let schema = (known.schema)();
     if args.dictionary {
