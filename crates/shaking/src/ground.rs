@@ -7,8 +7,8 @@ mod record;
 
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
-    Channel, Component, GroundMotion, History, Horizontals, IntensityMeasure, MotionError,
-    Processing, Record, Stage,
+    Channel, Component, GroundMotion, Horizontals, IntensityMeasure, MotionError, Processing,
+    Record, Stage,
 };
 
 use crate::motion::{
@@ -60,22 +60,6 @@ impl Ground {
     /// Returns the time (s) after which no acceleration exceeds a limit (m/s²).
     pub fn calm_from(&self, limit: f64) -> f64 {
         self.motion.as_ref().map_or(0.0, |motion| motion.calm_from(limit))
-    }
-
-    /// Returns the magnitudes of the acceleration (m/s²) and of the velocity (m/s), of both components together, at a
-    /// time (s).
-    pub fn strength(&self, time: f64) -> [f64; 2] {
-        let Some(motion) = &self.motion else { return [0.0; 2] };
-        let across = motion.horizontal.at(time);
-        let up = motion.vertical.as_ref().map(|up| up.at(time)).unwrap_or_default();
-        [across.acceleration.hypot(up.acceleration), across.velocity.hypot(up.velocity)]
-    }
-
-    /// Returns the time step (s) at which the motion is resolved, at most a thousandth of its duration.
-    pub fn resolution(&self) -> f64 {
-        let Some(motion) = &self.motion else { return f64::INFINITY };
-        let up = motion.vertical.as_ref().map_or(f64::INFINITY, History::natural_step);
-        motion.horizontal.natural_step().min(up).min(1e-3 * motion.duration)
     }
 
     /// Returns the time (s) at which the motion ends; `None` without a motion.

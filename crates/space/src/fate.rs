@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use barrelstack::assemble::PartKind;
-use barrelstack::watch::{Loss, STRAINED, Thresholds};
+use barrelstack::watch::{Loss, Thresholds};
 use barrelstack_dynamics::space::Wrench;
 use barrelstack_dynamics::{BodyId, Linear as _, Pose, Rotation3, Spatial, State, Vec3, math};
 use serde::Serialize;
@@ -136,8 +136,6 @@ pub struct Fates {
     collapse: Option<(f64, BodyId)>,
     /// Time (s) at which the first barrel counted as fallen; `None` if no barrel has fallen.
     first_fall: Option<f64>,
-    /// Time (s) at which a body was last [strained](STRAINED); zero until then.
-    strained: f64,
 }
 
 impl Fates {
@@ -155,7 +153,6 @@ impl Fates {
             all: state.poses.iter().map(fate).collect(),
             collapse: None,
             first_fall: None,
-            strained: 0.0,
         }
     }
 
@@ -173,11 +170,6 @@ impl Fates {
     /// Returns the time (s) at which the first barrel counted as fallen; `None` if no barrel has fallen.
     pub fn first_fall(&self) -> Option<f64> {
         self.first_fall
-    }
-
-    /// Returns the time (s) at which a body was last [strained](STRAINED); zero if none ever was.
-    pub fn strained(&self) -> f64 {
-        self.strained
     }
 
     /// Returns the outcomes of all bodies at the end of a run, in the order of the parts.
@@ -242,19 +234,17 @@ impl Fates {
                 fate.peak_slip[0] = fate.peak_slip[0].max(mean.x.abs());
                 fate.peak_slip[1] = fate.peak_slip[1].max(mean.y.abs());
             }
-            if self.all[i].left_seat.is_none() && self.lost(i, &slips, STRAINED).is_some() {
-                self.strained = time;
-                if let Some((loss, heading)) = self.lost(i, &slips, 1.0) {
-                    self.all[i].left_seat = Some((time, loss, heading));
-                    self.collapse.get_or_insert((time, i));
-                }
+            if self.all[i].left_seat.is_none()
+                && let Some((loss, heading)) = self.lost(i, &slips)
+            {
+                self.all[i].left_seat = Some((time, loss, heading));
+                self.collapse.get_or_insert((time, i));
             }
         }
     }
 
-    /// Returns the kind and the direction of the loss of seat, with all limits of displacement and tilt multiplied by
-    /// `share`; `None` if the body is on its seat in the current state.
-    fn lost(&self, i: BodyId, slips: &[Vec3], share: f64) -> Option<(Loss, Heading)> {
+    /// Returns the kind and the direction of the loss of seat; `None` if the body is on its seat in the current state.
+    fn lost(&self, i: BodyId, slips: &[Vec3]) -> Option<(Loss, Heading)> {
         let part = &self.stack.parts[i];
         let fate = &self.all[i];
         let slip = mean(slips);
@@ -263,7 +253,7 @@ impl Fates {
             return None;
         }
         if part.kind == PartKind::Barrel {
-            let most = share * self.thresholds.seat_loss_ratio * part.size;
+            let most = self.thresholds.seat_loss_ratio * part.size;
             if slip.dot(slip) > most * most {
                 // The direction is relative to the ground, since the rack may be tilted.
                 let displacement =
@@ -271,8 +261,7 @@ impl Fates {
                 return Some((Loss::Displaced, Heading::of(displacement)));
             }
         } else {
-            let [across, along] =
-                self.stack.reach.map(|m| share * m * self.thresholds.rack_slide_ratio);
+            let [across, along] = self.stack.reach.map(|m| m * self.thresholds.rack_slide_ratio);
             let off = |slip: &&Vec3| slip.y.abs() > along;
             if !part.supports.is_empty() {
                 // A rack that turns about the vertical walks off one of its barrels first.
@@ -291,7 +280,7 @@ impl Fates {
             let own = self.up(i);
             let under = below.map_or(UP, |rack| self.up(rack));
             let between = math::acos(own.dot(under).clamp(-1.0, 1.0));
-            if between > share * most {
+            if between > most {
                 return Some((Loss::Tilted, Heading::of(own - under)));
             }
         }

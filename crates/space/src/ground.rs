@@ -136,18 +136,6 @@ impl From<barrelstack::Ground> for Ground {
 }
 
 impl Ground {
-    /// Returns the magnitudes of the acceleration (m/s²) and of the velocity (m/s) at a time (s).
-    pub fn strength(&self, time: f64) -> [f64; 2] {
-        let [_, velocity, acceleration] = self.kinematics(time);
-        [acceleration.length(), velocity.length()]
-    }
-
-    /// Returns the time step (s) at which the motion is resolved, at most a thousandth of its duration.
-    pub fn resolution(&self) -> f64 {
-        let second = self.second.as_ref().map_or(f64::INFINITY, barrelstack::Ground::resolution);
-        self.first.resolution().min(second)
-    }
-
     /// Returns the acceleration (m/s²) at a time (s).
     pub fn acceleration(&self, time: f64) -> Vec3 {
         self.kinematics(time)[2]

@@ -423,7 +423,7 @@ impl Watch {
             return;
         }
         let collapse = self.fates.collapse();
-        if self.rest.observe(state, &self.fates) {
+        if self.rest.observe(state, collapse.is_some()) {
             self.ending = Some(Ending::Rest);
         } else if collapse.is_some_and(|(at, _)| at + self.after_collapse <= state.time) {
             self.ending = Some(Ending::AfterCollapse);

@@ -1,7 +1,6 @@
 //! Run observers: frames, histories, stress envelopes, and losses of seats and falls.
 
 mod elements;
-mod fading;
 mod fate;
 mod joints;
 mod recording;
@@ -19,8 +18,7 @@ use crate::ground::Ground;
 use crate::scenario::{Scenario, Until};
 
 pub use elements::{ElementFate, ElementFates};
-pub use fading::Fading;
-pub use fate::{Fate, Fates, Loss, PeakMotion, STRAINED, Thresholds};
+pub use fate::{Fate, Fates, Loss, PeakMotion, Thresholds};
 pub use joints::{ForceBetween, Joint, Joints, PeakForces, leans_on};
 pub use recording::{Channel, Frames, JointForces, Recording};
 pub use rest::{Ending, Rest};
@@ -106,7 +104,7 @@ impl<R: Real> End<R> {
         state: &State<Planar<R>>,
         fates: &Fates<R>,
     ) -> (R::Mask, R::Mask) {
-        let rest = self.rest.observe(state, !fates.stands(), fates.strained());
+        let rest = self.rest.observe(state, !fates.stands());
         ((fates.collapse() + self.after_collapse).le(state.time), rest)
     }
 }

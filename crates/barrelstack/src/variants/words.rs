@@ -511,7 +511,8 @@ mod tests {
         one.counted_for = Some(2.0);
         assert!(of(&one).ends_with("at 6.0 s; all 10 barrels fall within 2 s of that."));
         one.first_fall = None;
-        assert!(of(&one).ends_with("after 6.0 s; no barrel falls within 2 s of that."));
+        let said = of(&one);
+        assert!(said.ends_with("at 6.0 s; no barrel falls within 2 s of that."), "{said}");
     }
 
     #[test]

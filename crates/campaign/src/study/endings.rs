@@ -21,8 +21,7 @@ pub struct Endings {
     pub judged: u64,
     /// Number of cases that were simulated until nothing moved and the ground was still. After a collapse, or if only
     /// the verdict is requested, calm ground is sufficient: its acceleration remains at most 0.02 g, or less if a
-    /// friction coefficient is small. If only the verdict is requested, these are also the cases in which the rest of
-    /// the motion was too weak to make the stack fall.
+    /// friction coefficient is small.
     ///
     /// Includes cases whose stack fell under its own weight, before any shaking.
     pub followed: u64,
@@ -198,7 +197,7 @@ impl Following {
                 self.patience
             ),
             None if self.by_verdict => format!(
-                "every case is followed until its verdict is known; a standing stack is followed until the rest of the motion is too weak to make it fall, at most {} s after its motion",
+                "every case is followed until its verdict is known; a standing stack is followed until it rests and the ground stays below 0.02 g, at most {} s after its motion",
                 self.patience
             ),
             None => "every case is followed through its motion and 5 s more".to_owned(),

@@ -448,7 +448,7 @@ class ImperfectionsFields(TypedDict, total=False):
     """
     until: Literal["rest", "verdict", "duration"]
     """Criterion that ends the variants; used only if `run.until` is "rest". The value "verdict" ends a variant 2 s
-    after its first loss of a seat, or when the rest of the motion is too weak to make it fall. The value "rest"
+    after its first loss of a seat, or when it is at rest on ground that stays below 0.02 g. The value "rest"
     ends a variant when all bodies have come to rest. Default: verdict.
     """
     variants: int
@@ -890,8 +890,8 @@ class RunFields(TypedDict, total=False):
     """Time for which the run continues after a collapse. Default: never stop early."""
     until: Literal["rest", "verdict", "duration"]
     """Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and
-    all bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when the rest of the
-    motion is too weak to make a standing stack fall. "duration" ends it when `duration` is over. With "rest",
+    all bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack
+    has come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest",
     `imperfections.until` determines when the runs of the variants end. Default: "rest" for a stack, "duration"
     for a free scene.
     """

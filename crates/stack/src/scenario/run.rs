@@ -38,8 +38,8 @@ named! {
     pub enum Until {
         /// The motion is over, and all bodies have come to rest.
         Rest = "rest",
-        /// The verdict is known: 2 s after the first loss of a seat, or once the rest of the motion is too weak to make a
-        /// standing stack fall.
+        /// The verdict is known: 2 s after the first loss of a seat, or once a standing stack has come to rest and the
+        /// remaining ground motion is too weak to move it.
         Verdict = "verdict",
         /// The stated duration is over.
         Duration = "duration",
@@ -85,8 +85,8 @@ section! {
     /// Settings of the run.
     pub static RUN = "run", by method of METHODS;
     /// Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and all
-    /// bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when the rest of the motion
-    /// is too weak to make a standing stack fall. "duration" ends it when `duration` is over. With "rest",
+    /// bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack has
+    /// come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest",
     /// `imperfections.until` determines when the runs of the variants end.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");

@@ -123,12 +123,7 @@ pub struct Fates<R: Real = f64> {
     first: PerLane<Option<BodyId>>,
     /// Time (s) at which the first barrel counted as fallen; infinite until then.
     first_fall: R,
-    /// Time (s) at which a body was last [strained](STRAINED); zero until then.
-    strained: R,
 }
-
-/// Share of the limit of its displacement or tilt above which a body on its seat counts as strained.
-pub const STRAINED: f64 = 1.0 / 3.0;
 
 /// Kind and supports of a body, which are the same in all lanes.
 #[derive(Clone, Debug)]
@@ -148,7 +143,7 @@ lanewise!(struct Followed<R> {
     peak_displacement, residual_displacement, displacement_at_collapse, peak_slip, residual_slip,
     peak_tilt, peak_uplift, whole_run
 });
-lanewise!(struct Fates<R> { fall_drop, bodies, collapse, first, first_fall, strained });
+lanewise!(struct Fates<R> { fall_drop, bodies, collapse, first, first_fall });
 
 /// A body, its limits, and its outcome so far.
 #[derive(Clone, Debug)]
@@ -236,7 +231,6 @@ impl Fates {
             collapse: f64::INFINITY,
             first: PerLane::single(None),
             first_fall: f64::INFINITY,
-            strained: 0.0,
         }
     }
 
@@ -299,11 +293,6 @@ impl<R: Real> Fates<R> {
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn stands(&self) -> R::Mask {
         !self.collapse.lt(R::splat(f64::INFINITY))
-    }
-
-    /// Returns the time (s) at which a body was last [strained](STRAINED); zero in lanes in which none ever was.
-    pub fn strained(&self) -> R {
-        self.strained
     }
 
     /// Records an accepted state.
@@ -369,24 +358,18 @@ impl<R: Real> Fates<R> {
         let never = R::splat(f64::INFINITY);
         let body = &self.bodies[i];
         let fell = body.fell_at.lt(never);
-        let share = R::splat(STRAINED);
-        let (slid, tilted, strained) = match body.support.kind {
+        let (slid, tilted) = match body.support.kind {
             PartKind::Ground | PartKind::Device | PartKind::Wine | PartKind::Body => return,
             PartKind::Barrel => {
-                let (limit, slipped) = (body.most_slip * body.most_slip, slip.dot(slip));
-                (limit.lt(slipped), R::Mask::default(), (share * share * limit).lt(slipped))
+                ((body.most_slip * body.most_slip).lt(slip.dot(slip)), R::Mask::default())
             }
             PartKind::Rack => {
                 let below =
                     body.support.below.map_or(R::zero(), |rack| state.poses[rack].orientation);
                 let tilt = (state.poses[i].orientation - below).abs();
-                let slip = slip.x.abs();
-                let strained =
-                    (share * body.most_slip).lt(slip) | (share * body.most_tilt).lt(tilt);
-                (body.most_slip.lt(slip), body.most_tilt.lt(tilt), strained)
+                (body.most_slip.lt(slip.x.abs()), body.most_tilt.lt(tilt))
             }
         };
-        self.strained = R::select(strained, state.time, self.strained);
         let left = (slid | tilted | fell) & !body.left_seat.lt(never);
         if !left.any() {
             return;

@@ -1,15 +1,10 @@
-//! Rest criterion: no body is fast enough to change the outcome, and the ground is still, or calm after a collapse, or
-//! has become much weaker than what the stack has withstood.
+//! Rest criterion: the ground is still, or calm after a collapse, and no body is fast enough to change the outcome.
 
-use std::sync::Arc;
-
-use barrelstack_dynamics::lanes::PerLane;
 use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{
     BodyId, FrictionLaw, Interface, Linear, Motion, Planar, Space, State, lanewise,
 };
 
-use super::fading::Fading;
 use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
 use crate::scenario::{Scenario, Until};
@@ -36,10 +31,6 @@ const CALM: f64 = 0.02;
 /// friction coefficient.
 const CALM_OF_FRICTION: f64 = 0.1;
 
-/// Share of the largest kinetic energy of a stack above which the stack counts as lively: it still sways at more than
-/// half of its largest speed.
-pub const LIVELY: f64 = 0.25;
-
 /// Largest height of the center of a barrel that counts as lying on the floor, divided by the radius of the barrel.
 pub const ON_FLOOR: f64 = 1.05;
 
@@ -47,8 +38,7 @@ pub const ON_FLOOR: f64 = 1.05;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// All bodies had come to rest on ground that was still. After a collapse, or if only the verdict is requested,
-    /// calm ground is sufficient. If only the verdict is requested, a motion whose rest is [faint](Fading) is sufficient,
-    /// too.
+    /// calm ground is sufficient.
     Rest,
     /// The run had continued after a collapse for the time that the scenario specifies.
     AfterCollapse,
@@ -102,33 +92,22 @@ pub struct Rest<R: Real = f64> {
     /// Duration (s) for which all bodies must be slow before they count as at rest.
     hold: R,
     bodies: Vec<Mover<R>>,
-    /// Time (s) at which a body was last in motion, or the ground was not yet calm.
+    /// Time (s) at which a body was last in motion.
     moved: R,
-    /// Decay of the ground motion, for a run that may end before the ground is calm; `None` for every other run.
-    fading: PerLane<Option<Arc<Fading>>>,
-    /// Time (s) of the next test whether the rest of the motion is faint; infinite for a run without `fading`.
-    due: R,
-    /// Twice the largest kinetic energy (J) of all bodies relative to the ground, in all samples.
-    liveliest: R,
-    /// Time (s) of the last sample in which the stack was [lively](LIVELY).
-    lively: R,
 }
 
 /// A free body whose motion is observed.
 #[derive(Clone, Debug)]
 struct Mover<R: Real> {
     body: BodyId,
-    mass: R,
     /// Moment of inertia divided by the mass (m²).
     inertia: R,
     /// Height (m) of the center above the ground up to which the body counts as a barrel on the floor.
     floor: R,
 }
 
-lanewise!(struct Mover<R> { body, mass, inertia, floor });
-lanewise!(struct Rest<R> {
-    still_from, calm_from, slow, hold, bodies, moved, fading, due, liveliest, lively
-});
+lanewise!(struct Mover<R> { body, inertia, floor });
+lanewise!(struct Rest<R> { still_from, calm_from, slow, hold, bodies, moved });
 
 impl Rest {
     /// Creates the rest criterion for a scenario and its ground motion. No body counts as at rest before it has been
@@ -139,7 +118,6 @@ impl Rest {
             let of = &assembly.model.bodies()[body];
             (of.motion == Motion::Free).then(|| Mover {
                 body,
-                mass: of.mass,
                 inertia: of.inertia / of.mass,
                 floor: match part.kind {
                     PartKind::Barrel => ON_FLOOR * part.size,
@@ -153,22 +131,13 @@ impl Rest {
         };
         let calm = || ground.calm_from(scenario.run.gravity * calm(assembly.model.interfaces()));
         let (still_from, calm_from) = quiet_from(scenario.run.until, ground.end(), calm);
-        let hold = HOLD * scale.sqrt();
-        let fading = (scenario.run.until == Until::Verdict).then(|| {
-            let strength = |time| ground.strength(time);
-            Arc::new(Fading::new(ground.end(), ground.resolution(), hold, strength))
-        });
         Self {
             still_from,
             calm_from,
             slow: scenario.run.gravity * CLIMB * scale,
-            hold,
+            hold: HOLD * scale.sqrt(),
             bodies: assembly.parts.iter().enumerate().filter_map(mover).collect(),
             moved: 0.0,
-            due: if fading.is_some() { 0.0 } else { f64::INFINITY },
-            fading: PerLane::single(fading),
-            liveliest: 0.0,
-            lively: 0.0,
         }
     }
 }
@@ -201,19 +170,10 @@ pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
 }
 
 impl<R: Real> Rest<R> {
-    /// Observes an accepted state and returns the lanes in which the stack is at rest or, if only the verdict is requested,
-    /// can no longer fall.
-    ///
-    /// `collapsed` are the lanes with a collapsed stack; `strained` is the time (s) at which a body was last
-    /// [close](super::Fates::strained) to losing its seat.
+    /// Observes an accepted state and returns the lanes at rest. `collapsed` are the lanes with a collapsed stack.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
-    pub fn observe(
-        &mut self,
-        state: &State<Planar<R>>,
-        collapsed: R::Mask,
-        strained: R,
-    ) -> R::Mask {
+    pub fn observe(&mut self, state: &State<Planar<R>>, collapsed: R::Mask) -> R::Mask {
         let mut moves = state.time.lt(R::select(collapsed, self.calm_from, self.still_from));
         let ground = state.twists[Assembly::GROUND].linear;
         for at in 0..self.bodies.len() {
@@ -231,35 +191,7 @@ impl<R: Real> Rest<R> {
             }
         }
         self.moved = R::select(moves, state.time, self.moved);
-        let due = self.due.le(state.time);
-        let safe = if due.any() { self.safe(state, due, strained) } else { R::Mask::default() };
-        (self.moved + self.hold).le(state.time) | (safe & !collapsed)
-    }
-
-    /// Tests the lanes in `due` and returns those in which the rest of the motion is faint, compared with what the stack
-    /// has withstood since it was last lively or close to losing a seat.
-    fn safe(&mut self, state: &State<Planar<R>>, due: R::Mask, strained: R) -> R::Mask {
-        let ground = state.twists[Assembly::GROUND].linear;
-        let mut energy = R::zero();
-        for body in &self.bodies {
-            let twist = state.twists[body.body];
-            let velocity = twist.linear - ground;
-            let turning = body.inertia * twist.angular * twist.angular;
-            energy += body.mass * (velocity.dot(velocity) + turning);
-        }
-        let lively = due & (R::splat(LIVELY) * self.liveliest).lt(energy);
-        self.lively = R::select(lively, state.time, self.lively);
-        self.liveliest = R::select(due, self.liveliest.max(energy), self.liveliest);
-        let since = self.lively.max(strained);
-        let held = (since + self.hold).le(state.time);
-        R::Mask::from_lanes(|lane| {
-            let Some(fading) = self.fading[lane].as_ref().filter(|_| due.lane(lane)) else {
-                return false;
-            };
-            let now = state.time.lane(lane);
-            self.due = self.due.with_lane(lane, now + fading.interval());
-            held.lane(lane) && fading.faint_from(since.lane(lane)) <= now
-        })
+        (self.moved + self.hold).le(state.time)
     }
 
     /// Returns the lanes in which a body is a barrel on the floor that approaches no other body.

@@ -396,7 +396,7 @@ impl<R: Real> StressWatch<R> {
                 let bounds = &mut self.bounds[at];
                 let presses = self.watched & contact.touching;
                 let anywhere = matches!(side.range, CellRange::Everywhere);
-                let point = if anywhere && (presses & !bounds.above).any() || !anywhere {
+                let point = if !anywhere || (presses & !bounds.above).any() {
                     pair.in_body(*side, contact.point, state, scratch)
                 } else {
                     // Not needed: the contact loads the point of the rack that it has loaded before.
