@@ -350,8 +350,8 @@ class FrictionFields(TypedDict, total=False):
     """Ratio of the damping of the tangential spring to the normal damping. Default: 1.0."""
     tangential_stiffness_ratio: Union[float, Quantity]
     """Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, friction
-    reverses sooner, but the time step must be smaller. Default: for constants per seat, the ratio in the catalog:
-    2 on barrels and on posts, and 4 on the ground; for all other constants, 1.
+    reverses sooner, but the time step must be smaller. Default: for constants per seat, the ratio in the
+    catalog: 2 on barrels and on posts, and 4 on the ground; for all other constants, 1.
     """
     velocity: Quantity
     """Slip rate at which the friction is fully developed."""
