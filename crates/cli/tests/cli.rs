@@ -47,6 +47,21 @@ fn timeless(text: &str) -> Vec<String> {
 }
 
 #[test]
+fn an_option_that_is_no_number_is_refused_in_plain_words() {
+    for (arguments, said) in [
+        (["protect", "--budget=lots"], "'lots' for '--budget <NUMBER>': expected a number\n"),
+        (["heights", "--seed=a"], "'a' for '--seed <NUMBER>': expected a whole number\n"),
+        (["run", "--variants="], "'' for '--variants <NUMBER>': "),
+    ] {
+        let output = barrelstack(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let text = stderr(&output);
+        assert!(text.contains(said), "{text}");
+        assert!(!text.contains("literal") && !text.contains("digit"), "{text}");
+    }
+}
+
+#[test]
 fn a_page_states_its_date_and_commit_and_a_wrong_date_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");

@@ -385,10 +385,10 @@ impl Reader<'_> {
                 Ok(quantity)
             }
             Value::Integer(Some(number)) => {
-                Err(self.bare_number(name, node, &number.to_string(), &unit))
+                Err(self.bare_number(name, node, *number as f64, &unit, range))
             }
             Value::Float(number) if number.is_finite() => {
-                Err(self.bare_number(name, node, &plain(*number), &unit))
+                Err(self.bare_number(name, node, *number, &unit, range))
             }
             Value::Float(_)
             | Value::Integer(None)
@@ -400,7 +400,18 @@ impl Reader<'_> {
     }
 
     /// Creates an error about a number without a unit, with advice to add the SI unit.
-    fn bare_number(&self, name: &str, node: &Node, number: &str, unit: &str) -> InputError {
+    ///
+    /// The example contains the number itself, or another number if this one is out of `range`.
+    fn bare_number(
+        &self,
+        name: &str,
+        node: &Node,
+        number: f64,
+        unit: &str,
+        range: Range,
+    ) -> InputError {
+        let valid = [number, 1.0, range.least, range.greatest];
+        let number = plain(valid.into_iter().find(|one| range.contains(*one)).unwrap_or(number));
         let of_a_list = self.section.any_field(name).is_some_and(|field| {
             matches!(field.kind, Kind::Values | Kind::Point(_) | Kind::Triple(_) | Kind::Points(_))
         });
