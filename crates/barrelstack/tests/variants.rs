@@ -223,7 +223,7 @@ fn what_falls_under_its_own_weight_counts_as_fallen_and_is_said_first() {
     assert_eq!((spread.variants, spread.broken, spread.run()), (8, 0, 8));
     assert_eq!(spread.modes.get("gravity"), Some(&spread.cannot_stand));
     let headline = answer.headline();
-    assert!(headline.starts_with("Along the barrels, "), "{headline}");
+    assert!(headline.starts_with("Not safe. Along the barrels, "), "{headline}");
     assert!(headline.contains("under their own weight, before they are shaken."), "{headline}");
     assert!(!headline.contains("it stands."), "{headline}");
     // The shown run was shaken.

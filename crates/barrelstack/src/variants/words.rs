@@ -92,12 +92,12 @@ pub fn headline_in_space(spread: &Spread) -> String {
     answer(&[(None, spread)])
 }
 
-/// Describes, in this order: variants that fall before the shaking or have no verdict, the verdict of the worst plane
-/// with the counts of all planes, the influence of the uncertain constants in the worst plane, the course of the
+/// Describes, in this order: the verdict of the worst plane with the counts of all planes, variants that fall before the
+/// shaking or have no verdict, the influence of the uncertain constants in the worst plane, the course of the
 /// collapse if there is only one plane, and stave overload.
 fn answer(planes: &[Placed<'_>]) -> String {
-    let mut sentences: Vec<String> = planes.iter().flat_map(|plane| before(*plane)).collect();
-    sentences.extend(verdict(planes));
+    let mut sentences: Vec<String> = verdict(planes).into_iter().collect();
+    sentences.extend(planes.iter().flat_map(|plane| exceptions(*plane)));
     sentences.extend(worst(planes).and_then(depends_on));
     if let [(_, spread)] = planes
         && spread.collapsed > spread.cannot_stand
@@ -353,22 +353,25 @@ fn barrels(fallen: [f64; 2], all: usize, noun: &str) -> String {
     }
 }
 
-/// Returns the sentences that precede the verdict, about variants that fall under their own weight
-/// and about variants without a verdict.
-fn before((view, spread): Placed<'_>) -> Vec<String> {
+/// Returns the sentences about variants that fall under their own weight and about variants without a verdict.
+fn exceptions((view, spread): Placed<'_>) -> Vec<String> {
     let place = view.map_or_else(String::new, |view| format!("{}, ", view.words()));
     let (fallen, broken, all) = (spread.cannot_stand, spread.broken, spread.run());
     let counted =
         |count: u32| if count == all { all_of(all) } else { format!("{count} of {all} variants") };
     let mut sentences = Vec::new();
     if fallen > 0 {
-        let (their, they) = if fallen == 1 {
-            ("falls under its", "it is")
-        } else {
-            ("fall under their", "they are")
+        let verb = match (fallen == all, fallen) {
+            (true, 1) => "falls",
+            (true, _) => "fall",
+            (false, 1) => "does so",
+            (false, _) => "do so",
         };
+        let who =
+            if fallen == all { all_of(all) } else { format!("{fallen} of the variants that fall") };
+        let (their, they) = if fallen == 1 { ("its", "it is") } else { ("their", "they are") };
         sentences
-            .push(format!("{place}{} {their} own weight, before {they} shaken.", counted(fallen)));
+            .push(format!("{place}{who} {verb} under {their} own weight, before {they} shaken."));
     }
     if broken > 0 {
         let has = if broken == 1 { "has" } else { "have" };
@@ -516,19 +519,22 @@ mod tests {
     }
 
     #[test]
-    fn what_falls_by_itself_or_has_no_verdict_comes_first_and_counts() {
+    fn what_falls_by_itself_or_has_no_verdict_counts_and_follows_the_verdict() {
         let mut one = spread(61, 2);
         (one.cannot_stand, one.broken) = (2, 4);
         let said = headline(&[(View::Transverse, &one)]);
         assert_eq!(
             said,
-            "Across the barrels, 2 of 65 variants fall under their own weight, before they are shaken. Across the \
-             barrels, 4 of 65 variants have no verdict, because a model could not be built or a computation failed; the verdict counts such variants as falling. Not safe. Across the barrels, 2 of 61 variants fall (1–11 %)."
+            "Not safe. Across the barrels, 2 of 61 variants fall (1–11 %). Across the barrels, 2 of the variants that \
+             fall do so under their own weight, before they are shaken. Across the barrels, 4 of 65 variants have no verdict, \
+             because a model could not be built or a computation failed; the verdict counts such variants as falling."
         );
         // The same counts in both planes.
         let both = headline(&[(View::Transverse, &spread(64, 0)), (View::Longitudinal, &one)]);
         assert!(
-            both.starts_with("Along the barrels, 2 of 65 variants fall under their own weight"),
+            both.contains(
+                "). Along the barrels, 2 of the variants that fall do so under their own"
+            ),
             "{both}"
         );
         // Variants that fall before they are shaken are not reported as falling when shaken.
