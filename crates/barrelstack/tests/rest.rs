@@ -212,8 +212,8 @@ fn two_thousand_variants_have_the_verdicts_of_those_followed_to_rest() {
     assert_eq!((found.cases, found.outcomes, found.loads), (2000, 0, 0));
 }
 
-/// Records of other earthquakes, of the folder `../shared/ground-motions`, which may not be passed on: from rock and from
-/// soft soil, with short and with long shaking, and with two events.
+/// Records of other earthquakes in the folder `../shared/ground-motions`, which may not be passed on. Their shaking lasts
+/// from 20 s to 200 s.
 const RECORDS: [&str; 12] = [
     "csmip-v2/CE58667.V2",
     "geonet/20161113_110259_WTMC_20.V2A",

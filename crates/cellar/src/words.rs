@@ -14,14 +14,11 @@ pub(crate) fn plural(count: u32, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// The share of the only run if that run does not count.
-const NO_RUN: &str = "no run";
-
 /// Formats a count out of `of` variants with its share and interval, such as "28 of 32 variants (88 %, 95 % interval
 /// 72 % to 95 %)"; "the only run" or "no run" if `of` is 1.
 pub(crate) fn share(count: &Count, of: u32) -> String {
     if of == 1 {
-        return if count.of_variants == 0 { NO_RUN } else { "the only run" }.to_owned();
+        return if count.of_variants == 0 { "no run" } else { "the only run" }.to_owned();
     }
     let [low, high] = count.interval.map(percent);
     let share = count.share.map_or_else(String::new, |share| format!("{}, ", percent(share)));
@@ -437,9 +434,11 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     for place in &summary.places {
         if let Some(count) = &place.leads_out {
             let path = format!("a path 0.6 m wide from the place \"{}\" to a door", place.name);
-            all.push(match share(count, *of) {
-                none if none == NO_RUN => format!("In {none} does {path} remain open."),
-                some => format!("In {some}, {path} remains open."),
+            let runs = share(count, *of);
+            all.push(if *of == 1 && count.of_variants == 0 {
+                format!("In {runs} does {path} remain open.")
+            } else {
+                format!("In {runs}, {path} remains open.")
             });
         }
     }

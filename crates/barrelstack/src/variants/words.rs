@@ -526,8 +526,8 @@ mod tests {
         assert_eq!(
             said,
             "Not safe. Across the barrels, 2 of 61 variants fall (1–11 %). Across the barrels, 2 of the variants that \
-             fall do so under their own weight, before they are shaken. Across the barrels, 4 of 65 variants have no verdict, \
-             because a model could not be built or a computation failed; the verdict counts such variants as falling."
+             fall do so under their own weight, before they are shaken. Across the barrels, 4 of 65 variants have no \
+             verdict, because a model could not be built or a computation failed; the verdict counts such variants as falling."
         );
         // The same counts in both planes.
         let both = headline(&[(View::Transverse, &spread(64, 0)), (View::Longitudinal, &one)]);
