@@ -6,6 +6,8 @@ use std::f64::consts::{PI, TAU};
 
 use barrelstack_dynamics::Shape;
 use barrelstack_dynamics::Vec2;
+use barrelstack_dynamics::lanes::{Lanewise as _, Task, Width};
+use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::shape::{
     BarrelProfile, Circle, Cradle, Gap, HalfPlane, Polygon, PolygonError, Surface,
 };
@@ -190,8 +192,59 @@ fn points_about(seed: u64, count: usize) -> impl Iterator<Item = Vec2> {
     (0..count).map(move |_| Vec2::new(random.within(-0.9, 0.9), random.within(-0.9, 0.9)))
 }
 
+/// Computes the gaps of points in the first lane of a bundle, while the points in all other lanes lie in the middle of the
+/// shape. So no lane takes a shortcut that is correct only for some of them.
+struct Beside<'a>(&'a Shape, &'a [Vec2]);
+
+impl Task for Beside<'_> {
+    type Output = Vec<Gap<Planar>>;
+    fn run<R: Real>(self) -> Self::Output {
+        let shape = Shape::<R>::in_all(self.0);
+        let gap = |point: &Vec2| {
+            let mut points = Vec2::<R>::in_all(&Vec2::default());
+            points.put(0, point);
+            let gap = shape.gap(points);
+            Gap { distance: gap.distance.lane(0), normal: gap.normal.of_lane(0) }
+        };
+        self.1.iter().map(gap).collect()
+    }
+}
+
+/// Returns points about a shape, and for each of them a point within a millimeter of the boundary.
+fn points_about_and_near(drawn: &Drawn, seed: u64, count: usize) -> Vec<Vec2> {
+    let mut random = Random(seed);
+    let both = |point: Vec2| {
+        let gap = drawn.gap(point);
+        [point, point - gap.normal * (gap.distance + random.within(-1e-3, 1e-3))]
+    };
+    points_about(seed, count).flat_map(both).collect()
+}
+
 proptest! {
     #![proptest_config(common::cases(64))]
+
+    #[test]
+    fn a_gap_has_the_same_bits_with_and_without_shortcuts(drawn in any_shape(), seed in any::<u64>()) {
+        let points = points_about_and_near(&drawn, seed, 40);
+        // On a machine without vector units, there is only one lane.
+        let beside = Width::widest().run(Beside(&drawn.shape, &points)).unwrap();
+        for (point, beside) in points.iter().zip(beside) {
+            prop_assert_eq!(drawn.gap(*point), beside, "at {:?}", point);
+        }
+    }
+
+    #[test]
+    fn where_an_arc_is_found_to_be_nearest_it_is(drawn in any_shape(), seed in any::<u64>()) {
+        for point in points_about_and_near(&drawn, seed, 40) {
+            if Surface::<Planar>::is_by_arc(&drawn.shape, point) {
+                let nearest = Surface::<Planar>::nearest(&drawn.shape, point, 0.0);
+                prop_assert!(nearest.round, "at {point:?}");
+                // Inside the core of a profile, a head can bear a point although a stave is nearest.
+                let profile = matches!(drawn.shape, Shape::BarrelProfile(_));
+                prop_assert!(!profile || nearest.core > 1e-5, "at {point:?}");
+            }
+        }
+    }
 
     #[test]
     fn distance_is_that_of_the_nearest_boundary_point(drawn in any_shape(), seed in any::<u64>()) {
