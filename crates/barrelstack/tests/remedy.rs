@@ -1,6 +1,7 @@
 //! The remedy of a stack: whether it suffices, and its wording.
 
 use std::ops::ControlFlow;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use barrelstack::Scenario;
@@ -200,6 +201,45 @@ fn sentences_say_what_suffices_and_what_does_not() {
         ),
     ] {
         assert_eq!(said(height, straps, all), words);
+    }
+}
+
+/// The progress states the changed stack, the number of its runs and the place of the change in the search; no number
+/// exceeds its total.
+#[test]
+fn the_progress_of_a_search_has_names_and_totals() {
+    for (view, things, of) in [("transverse", "variants", 8), ("both", "runs", 16)] {
+        let view = format!("stack.view={view}");
+        let answer = answered(&scenario(&[&view]));
+        let seen = Mutex::new(Vec::new());
+        let found = variants::remedy(&answer, &|attempt| {
+            let counts = (attempt.number, attempt.candidates, attempt.done, attempt.of);
+            let now = (attempt.stack.to_owned(), counts, attempt.to_string());
+            let mut seen = seen.lock().unwrap();
+            if seen.last() != Some(&now) {
+                seen.push(now);
+            }
+            ControlFlow::Continue(())
+        });
+        let (found, seen) = (found.unwrap().unwrap(), seen.into_inner().unwrap());
+        let mut stacks: Vec<&str> = Vec::new();
+        for (stack, (number, candidates, done, total), words) in &seen {
+            if !stacks.contains(&stack.as_str()) {
+                stacks.push(stack);
+            }
+            // Changes are numbered in the order in which they are first tried.
+            assert_eq!(stacks.get(number - 1), Some(&stack.as_str()));
+            assert_eq!((*candidates, *total), (found.candidates as usize, of));
+            assert!(number <= candidates && done <= total, "{words}");
+            assert_eq!(
+                words,
+                &format!(
+                    "testing {stack}: {done} of {of} {things} (change {number} of up to {candidates})"
+                )
+            );
+        }
+        assert_eq!(stacks.first(), Some(&"a stack of two levels"));
+        assert_eq!(stacks.len(), found.tried.len(), "{stacks:?}");
     }
 }
 

@@ -1,6 +1,7 @@
 //! Runs work without the interpreter lock; meanwhile, the calling thread polls for Ctrl-C and
 //! reports progress.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
@@ -20,18 +21,23 @@ pub(crate) struct ProgressState {
 }
 
 /// Latest progress: amount done, total, and unit.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, PartialEq)]
 struct Latest {
     done: f64,
     of: f64,
-    what: &'static str,
+    what: Cow<'static, str>,
 }
 
 impl ProgressState {
     /// Reports progress of the work; returns `Break` if the work should stop.
-    pub(crate) fn report(&self, done: f64, of: f64, what: &'static str) -> ControlFlow<()> {
-        *self.latest.lock().unwrap_or_else(PoisonError::into_inner) =
-            Some(Latest { done, of, what });
+    pub(crate) fn report(
+        &self,
+        done: f64,
+        of: f64,
+        what: impl Into<Cow<'static, str>>,
+    ) -> ControlFlow<()> {
+        let latest = Latest { done, of, what: what.into() };
+        *self.latest.lock().unwrap_or_else(PoisonError::into_inner) = Some(latest);
         if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
@@ -41,10 +47,12 @@ impl ProgressState {
     }
 
     fn pass_on(&self, last: &mut Option<Latest>, progress: &Bound<'_, PyAny>) -> PyResult<()> {
-        let latest = *self.latest.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(Latest { done, of, what }) = latest.filter(|_| latest != *last) {
+        let latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        if latest != *last
+            && let Some(Latest { done, of, what }) = &latest
+        {
+            progress.call1((*done, *of, what.as_ref()))?;
             *last = latest;
-            progress.call1((done, of, what))?;
         }
         Ok(())
     }

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use barrelstack::ground::from_disk;
 use barrelstack::scenario::{Scene, builtin, reference as fields_of, schema as schema_of};
-use barrelstack::variants::{self, Advance, Answer, RunChoice, Shown};
+use barrelstack::variants::{self, Advance, Answer, Attempt, RunChoice, Shown};
 use barrelstack::verify::verify;
 use barrelstack::watch::Pace;
 use barrelstack::{RunFailure, Summary};
@@ -122,9 +122,7 @@ impl Scenario {
             let mut answer =
                 variants::answer(&scenario, choice, &mut |now| report_advance(state, now))?;
             if remedy && !state.stopped() {
-                let found = variants::remedy(&answer, &|done| {
-                    state.report(done as f64, f64::NAN, "runs of changed stacks")
-                })?;
+                let found = variants::remedy(&answer, &|attempt| report_attempt(state, attempt))?;
                 answer.decides.summary.remedy = found;
             }
             if repeats && !state.stopped() {
@@ -160,8 +158,8 @@ impl Scenario {
                 report_advance(state, now)
             })?;
             if remedy && !state.stopped() {
-                answer.summary.remedy = barrelstack_space::variants::remedy(&answer, &|done| {
-                    state.report(done as f64, f64::NAN, "runs of changed stacks")
+                answer.summary.remedy = barrelstack_space::variants::remedy(&answer, &|attempt| {
+                    report_attempt(state, attempt)
                 })?;
             }
             if repeats && !state.stopped() {
@@ -274,6 +272,11 @@ pub(crate) fn report_advance(state: &ProgressState, now: Advance) -> ControlFlow
         Advance::First { .. } => ControlFlow::Continue(()),
         Advance::Run(now) => state.report(now.time, now.end_time, "s"),
     }
+}
+
+/// Reports the progress of a search for changes that keep the stack up.
+fn report_attempt(state: &ProgressState, now: Attempt<'_>) -> ControlFlow<()> {
+    state.report(now.done as f64, now.of as f64, now.counted())
 }
 
 /// Returns the name and the content of each bundled scenario.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pickle
+import re
 import subprocess
 import sys
 import threading
@@ -199,6 +200,17 @@ def test_progress_is_reported_and_what_it_raises_ends_the_run() -> None:
 
     with pytest.raises(RuntimeError, match="enough"):
         scenario.run(variants=64, progress=refuse)
+
+
+def test_the_progress_of_the_search_for_a_remedy_has_names_and_totals() -> None:
+    scenario = Scenario.load("candia-8-barrels").set({"stack.levels": 3, "run.stop_after_collapse": "0.1 s"})
+    reports: list[tuple[float, float, str]] = []
+    found = scenario.run(variants=8, remedy=True, progress=lambda *now: reports.append(now)).summary["remedy"]
+    tried = [now for now in reports if "a stack of" in now[2]]
+    assert tried
+    assert all(done <= of == 8 for done, of, _ in tried), tried
+    pattern = re.compile(rf"variants of a stack of .+ \(change \d+ of up to {found['candidates']}\)")
+    assert all(pattern.fullmatch(what) for _, _, what in tried), tried
 
 
 def test_an_observer_sees_every_so_many_steps_and_stops_the_run() -> None:

@@ -13,7 +13,8 @@ use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::{
-    Advance, Judged, Observer, Plane, Remedy, RunChoice, Spread, Trial, planes, remedy_by, verdict,
+    Advance, Judged, Observer, Plane, Remedy, RunChoice, RunCounter, Spread, Trial, planes,
+    remedy_by, verdict,
 };
 use barrelstack::watch::Ending;
 use barrelstack::{RunFailure, Scenario, pool};
@@ -310,7 +311,7 @@ struct InSpace {
 }
 
 impl Trial for InSpace {
-    fn run(&mut self, block: std::ops::Range<u32>, observer: Observer<'_>) -> Judged {
+    fn run(&mut self, block: std::ops::Range<u32>, observer: RunCounter<'_>) -> Judged {
         let numbers: Vec<u32> = (block.start + 1..=block.end).collect();
         let before = self.done;
         let cases = run_some(&self.plane, &self.ground, &numbers, &|done| observer(before + done));

@@ -242,10 +242,14 @@ impl Remedy {
 /// Returns the name of a tried change, such as "three levels" or "five levels held together by straps
 /// tightened to 4 kN".
 pub(super) fn name(tried: &Tried) -> String {
-    let levels = counted(tried.levels, "level");
-    match tried.pretension {
-        None => levels,
-        Some(pretension) if tried.levels == 1 => {
+    name_of(tried.levels, tried.pretension)
+}
+
+/// Returns the name of a stack with a number of levels and with straps of a pretension (N), if it has any.
+pub(super) fn name_of(levels: u32, pretension: Option<f64>) -> String {
+    match pretension {
+        None => counted(levels, "level"),
+        Some(pretension) if levels == 1 => {
             format!(
                 "one level whose barrels are held to their racks by straps tightened to {} kN",
                 1e-3 * pretension
@@ -254,7 +258,7 @@ pub(super) fn name(tried: &Tried) -> String {
         Some(pretension) => {
             format!(
                 "{} levels held together by straps tightened to {} kN",
-                number(tried.levels),
+                number(levels),
                 1e-3 * pretension
             )
         }

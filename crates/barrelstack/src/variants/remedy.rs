@@ -7,6 +7,7 @@
 
 mod search;
 
+use std::fmt;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -14,6 +15,7 @@ use barrelstack_fragility::{interval_of, share_less};
 use barrelstack_report::described;
 
 use self::search::{Counts, Plan};
+use super::advice::name_of;
 use super::{Answer, LEVEL, Plane, Spread, decides, planes, verdict};
 use crate::device::{Straps, Ties};
 use crate::ensemble::{Audience, CaseResult, Prepared, simulate};
@@ -97,16 +99,56 @@ described! {
     }
 }
 
-/// Progress callback: receives the number of finished runs of the current change, from several
-/// threads; may cancel.
-pub type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
+/// Progress of a search: the change that is being tried, and how far the search is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attempt<'a> {
+    /// Name of the changed stack, such as "a stack of three levels".
+    pub stack: &'a str,
+    /// Number of the change, in the order in which changes are first tried; the first is 1.
+    pub number: usize,
+    /// Number of changes that may be tried; the search ends earlier if it has found what suffices.
+    pub candidates: usize,
+    /// Number of finished runs of the changed stack.
+    pub done: usize,
+    /// Number of runs if all variants of the changed stack are run; fewer are run if the change is rejected early.
+    pub of: usize,
+    /// Noun for the runs: "variants" or, if every variant is run in several planes, "runs".
+    pub things: &'static str,
+}
+
+impl Attempt<'_> {
+    /// Describes what is counted, such as "variants of a stack of one level (change 3 of up to 9)".
+    pub fn counted(&self) -> String {
+        format!("{} of {} {}", self.things, self.stack, self.place())
+    }
+
+    /// Returns the place of the change in the search, such as "(change 3 of up to 9)".
+    fn place(&self) -> String {
+        format!("(change {} of up to {})", self.number, self.candidates)
+    }
+}
+
+/// Describes the progress, such as "testing a stack of one level: 5 of 16 variants (change 3 of up to 9)".
+impl fmt::Display for Attempt<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { stack, done, of, things, .. } = self;
+        write!(f, "testing {stack}: {done} of {of} {things} {}", self.place())
+    }
+}
+
+/// Progress callback: receives the progress of the search, from several threads; may cancel.
+pub type Observer<'a> = &'a (dyn Fn(Attempt<'_>) -> ControlFlow<()> + Sync);
+
+/// Progress callback of one change: receives the number of its finished runs, from several threads; may cancel.
+pub type RunCounter<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
 /// Variants of a changed stack, prepared to be run in blocks.
 pub trait Trial {
     /// Runs the variants whose indices are in `block`, in every plane; index 0 is the variant with the number 1.
     ///
-    /// Returns the verdicts in each plane, or `Break` if the observer cancels.
-    fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Judged;
+    /// Returns the verdicts in each plane, or `Break` if the observer cancels. The observer receives the number of
+    /// finished runs of all blocks so far.
+    fn run(&mut self, block: Range<u32>, observer: RunCounter<'_>) -> Judged;
 }
 
 /// Function that prepares the variants of a changed stack.
@@ -115,9 +157,8 @@ type Prepare<'a> = dyn Fn(&Scenario) -> Result<Box<dyn Trial>, GroundError> + 'a
 /// Searches for the largest number of levels, and for the loosest straps, with which at least
 /// [`ENOUGH`] percent of the variants of a stack stand in every plane.
 ///
-/// `observer` receives the number of finished runs of the current change, from several threads, and
-/// may cancel. Returns `None` if the stack stands, has no variants, or is run for less than the
-/// whole motion.
+/// `observer` receives the progress of the search, from several threads, and may cancel. Returns `None` if the stack
+/// stands, has no variants, or is run for less than the whole motion.
 ///
 /// # Errors
 /// When a motion cannot be read.
@@ -188,18 +229,18 @@ fn look(
         variants: planes.iter().map(Plane::count).max().unwrap_or(0),
         planes: planes.len(),
     };
-    let mut trials: Vec<Option<Box<dyn Trial>>> = changes.iter().map(|_| None).collect();
+    let mut started: Vec<Option<Started>> = changes.iter().map(|_| None).collect();
+    let mut count = 0;
     let mut run = |change: usize, block: Range<u32>| {
-        let trial = match &mut trials[change] {
-            Some(trial) => trial,
+        let Started { trial, number, stack } = match &mut started[change] {
+            Some(started) => started,
             none => {
-                let mut scenario = changes[change].scenario.clone();
-                // The motion after a collapse does not matter here.
-                scenario.run.stop_after_collapse = Some(0.0);
-                none.insert(prepare(&scenario)?)
+                count += 1;
+                none.insert(changes[change].start(prepare, count)?)
             }
         };
-        Ok(trial.run(block, observer))
+        let attempt = Attempt { stack, number: *number, ..plan.attempt() };
+        Ok(trial.run(block, &|done| observer(Attempt { done, ..attempt })))
     };
     let search::Found { counts, complete } = search::search::<GroundError>(&plan, &mut run)?;
     let mut tried: Vec<Option<Tried>> = changes
@@ -237,6 +278,15 @@ fn look(
 fn range(draws: &[f64]) -> [f64; 2] {
     let found = interval_of(draws, LEVEL);
     [(100.0 * found.low).floor() / 100.0, (100.0 * found.high).ceil() / 100.0]
+}
+
+/// A change whose trial has started.
+struct Started {
+    trial: Box<dyn Trial>,
+    /// Number of the change, in the order in which changes are first tried.
+    number: usize,
+    /// Name of the changed stack.
+    stack: String,
 }
 
 /// A change of the stack, with the changed scenario.
@@ -321,6 +371,15 @@ fn given(scenario: &Scenario, table: &str) -> Vec<String> {
 }
 
 impl Change {
+    /// Prepares the variants of the changed stack, as the change with this number that is tried.
+    fn start(&self, prepare: &Prepare<'_>, number: usize) -> Result<Started, GroundError> {
+        let mut scenario = self.scenario.clone();
+        // The motion after a collapse does not matter here.
+        scenario.run.stop_after_collapse = Some(0.0);
+        let stack = format!("a stack of {}", name_of(self.levels, self.pretension));
+        Ok(Started { trial: prepare(&scenario)?, number, stack })
+    }
+
     /// Summarizes the counts of the change.
     fn summarize(&self, counts: &Counts, plan: &Plan) -> Tried {
         let Self { kind, levels, pretension, changes, .. } = self;
@@ -361,7 +420,7 @@ impl InPlanes {
 }
 
 impl Trial for InPlanes {
-    fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Judged {
+    fn run(&mut self, block: Range<u32>, observer: RunCounter<'_>) -> Judged {
         let stopped = AtomicBool::new(false);
         let canceled = || {
             if observer(self.done.load(Ordering::Relaxed)).is_break() {

@@ -158,9 +158,7 @@ pub(super) fn remedied(
     show: bool,
 ) -> Result<(), RunFailure> {
     let progress = Progress::new(show);
-    let mut found = answer.remedy(&|done| {
-        progress.searched(done as u64, "run of a changed stack", "runs of changed stacks")
-    })?;
+    let mut found = answer.remedy(&|attempt| progress.tried(attempt))?;
     if let Some(found) = &mut found {
         found.comparison = command.against(found);
     }

@@ -15,6 +15,7 @@ use std::ops::{ControlFlow, Range};
 use barrelstack_fragility::{Interval, clopper_pearson};
 
 use super::super::spread::LEVEL;
+use super::Attempt;
 
 /// Share (%) of variants that must stand in every plane.
 pub const ENOUGH: u32 = 95;
@@ -43,6 +44,18 @@ impl Plan {
     /// Returns the number of changes that may be tried.
     pub(super) fn changes(&self) -> usize {
         self.heights + self.straps
+    }
+
+    /// Returns the totals of the search, as the progress of a change that has no name and no finished runs yet.
+    pub(super) fn attempt(&self) -> Attempt<'static> {
+        Attempt {
+            stack: "",
+            number: 0,
+            candidates: self.changes(),
+            done: 0,
+            of: self.variants as usize * self.planes,
+            things: if self.planes == 1 { "variants" } else { "runs" },
+        }
     }
 
     /// Returns the confidence level of a single interval, chosen so that all intervals hold simultaneously with the
