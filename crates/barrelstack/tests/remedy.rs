@@ -180,7 +180,7 @@ fn sentences_say_what_suffices_and_what_does_not() {
             Some(height(0)),
             None,
             &both,
-            "A stack of three levels would have stood in all 64 variants; straps tightened to 4 kN would not have \
+            "A stack of three levels would have stood in all 64 variants. Straps tightened to 4 kN would not have \
              been enough. At most 9 % of stacks with three levels would fall (95 % confidence, corrected for trying \
              up to 9 changes).",
         ),
@@ -202,6 +202,77 @@ fn sentences_say_what_suffices_and_what_does_not() {
     ] {
         assert_eq!(said(height, straps, all), words);
     }
+}
+
+#[test]
+fn sentences_say_which_levels_were_tried_and_not_enough() {
+    let tried = |kind, levels, pretension, suffices| Tried {
+        kind,
+        levels,
+        pretension,
+        changes: Vec::new(),
+        suffices,
+        variants: 16,
+        failed: if suffices { 0 } else { 8 },
+        share: None,
+        interval: None,
+        range: None,
+        better_than_as_it_is: None,
+    };
+    // The levels that were tried, from the highest to the lowest, of which the lowest suffices.
+    let said = |levels: &[u32], straps: &[(f64, bool)], complete| {
+        let last = levels.last().copied();
+        let levels = levels.iter().map(|count| tried("height", *count, None, Some(*count) == last));
+        let straps = straps
+            .iter()
+            .map(|(pretension, suffices)| tried("straps", 5, Some(*pretension), *suffices));
+        let all: Vec<Tried> = levels.chain(straps).collect();
+        let first = |kind| all.iter().find(|one| one.kind == kind && one.suffices).cloned();
+        let (height, straps) = (first("height"), first("straps"));
+        Remedy { height, straps, tried: all, complete, ..Remedy::default() }.sentence()
+    };
+    let loose = [(3e3, false), (5e3, false)];
+    for (levels, straps, words) in [
+        (
+            &[4, 3, 2, 1][..],
+            &loose[..],
+            "A stack of one level would have stood in all 16 variants. Two to four levels, and straps tightened to 3 \
+             or 5 kN, would not have been enough.",
+        ),
+        (
+            &[4, 3, 2],
+            &loose,
+            "A stack of two levels would have stood in all 16 variants. Three or four levels, and straps tightened to \
+             3 or 5 kN, would not have been enough.",
+        ),
+        (
+            &[4, 3],
+            &[],
+            "A stack of three levels would have stood in all 16 variants. Four levels would not have been enough.",
+        ),
+        // The next lower stack suffices.
+        (
+            &[4],
+            &loose,
+            "A stack of four levels would have stood in all 16 variants. Straps tightened to 3 or 5 kN would not have \
+             been enough.",
+        ),
+        (&[4], &[], "A stack of four levels would have stood in all 16 variants."),
+        (
+            &[4, 3],
+            &[(3e3, false), (4e3, true)],
+            "A stack of three levels, or of five levels held together by straps tightened to 4 kN, would have stood in \
+             all 16 variants. Four levels without these straps would not have been enough.",
+        ),
+    ] {
+        assert_eq!(said(levels, straps, true), words);
+    }
+    // Of the straps nothing is known if their search was stopped.
+    assert_eq!(
+        said(&[4, 3], &loose, false),
+        "A stack of three levels would have stood in all 16 variants. Four levels would not have been enough. The \
+         search for further changes was stopped."
+    );
 }
 
 /// The progress states the changed stack, the number of its runs and the place of the change in the search; no number

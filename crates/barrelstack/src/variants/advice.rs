@@ -29,11 +29,6 @@ impl Remedy {
                 name(straps),
                 share(straps)
             ),
-            (Some(height), None) if self.complete && any("straps") => format!(
-                "a stack of {} would have stood in {}; straps tightened to {straps} would not have been enough",
-                name(height),
-                share(height)
-            ),
             (None, Some(straps)) if any("height") => format!(
                 "a stack of {} would have stood in {}; fewer levels without straps would not have been enough",
                 name(straps),
@@ -61,7 +56,40 @@ impl Remedy {
         };
         let stopped =
             if self.complete { "" } else { " The search for further changes was stopped." };
-        format!("{}.{}{}{stopped}", capital(&sentence), self.confidence(), self.over_constants())
+        format!(
+            "{}.{}{}{}{stopped}",
+            capital(&sentence),
+            self.not_enough(),
+            self.confidence(),
+            self.over_constants()
+        )
+    }
+
+    /// States which changes were tried and would not have been enough, if a lower stack suffices: the numbers of levels
+    /// above it, and the straps if none suffice. Empty if there are no such changes.
+    fn not_enough(&self) -> String {
+        let Some(height) = &self.height else { return String::new() };
+        let higher = self
+            .tried
+            .iter()
+            .filter(|one| one.kind == "height" && one.levels > height.levels && !one.suffices);
+        let higher: Vec<u32> = higher.map(|one| one.levels).collect();
+        let range = higher.iter().min().zip(higher.iter().max());
+        let levels = range.map(|(least, most)| match most - least {
+            0 => counted(*least, "level"),
+            1 => format!("{} or {} levels", number(*least), number(*most)),
+            _ => format!("{} to {} levels", number(*least), number(*most)),
+        });
+        let strapped = self.tried.iter().any(|one| one.kind == "straps");
+        let straps = (self.straps.is_none() && self.complete && strapped)
+            .then(|| format!("straps tightened to {}", self.pretensions()));
+        let what = match (levels, straps, &self.straps) {
+            (Some(levels), Some(straps), _) => format!("{levels}, and {straps},"),
+            (Some(levels), None, Some(_)) => format!("{levels} without these straps"),
+            (Some(one), None, None) | (None, Some(one), _) => one,
+            (None, None, _) => return String::new(),
+        };
+        format!(" {} would not have been enough.", capital(&what))
     }
 
     /// States, for each sufficient change, the 95 % range of the share of stacks that fall, as the uncertain constants
