@@ -4,7 +4,9 @@ use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::{CollapseMode, Outcome};
 use barrelstack::report::{device_sentence, stopped};
 use barrelstack::scenario::View;
-use barrelstack::variants::words::{headline_in_space, measure, percent, tone as of_spread};
+use barrelstack::variants::words::{
+    all_that_fall, headline_in_space, measure, percent, tone as of_spread,
+};
 use barrelstack::watch::Loss;
 use barrelstack_report::{Tone, capital};
 
@@ -79,27 +81,9 @@ pub(crate) fn leaves(name: &str, loss: Loss) -> String {
 /// outcomes of the devices.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     let mut sentences: Vec<String> = summary.ensemble.iter().filter_map(measure).collect();
-    if let Some(directions) = &summary.directions {
-        let [across, along] = directions.first();
-        if across + along > 0 {
-            sentences.push(format!(
-                "In {across} of the {} variants that fall, a body first leaves its seat across the barrels, and in \
-                 {along} along them.",
-                across + along
-            ));
-        }
-        let [across, along] = directions.debris().map(f64::from);
-        if across + along > 0.0 {
-            sentences.push(format!(
-                "Of the barrels that fall{}, {} end up displaced mainly across the barrels, and {} mainly along them.",
-                summary
-                    .ensemble
-                    .as_ref()
-                    .map_or_else(String::new, |all| all.counted("the first loss of a seat")),
-                percent(across / (across + along)),
-                percent(along / (across + along))
-            ));
-        }
+    if let Some((directions, spread)) = summary.directions.as_ref().zip(summary.ensemble.as_ref()) {
+        sentences.extend(first_losses(directions.first(), spread.collapsed));
+        sentences.extend(debris(directions.debris(), &spread.counted("the first loss of a seat")));
     }
     if let Outcome::Collapse { time, first, .. } = &run.outcome {
         let part = run.stack.parts.iter().position(|part| part.name == *first);
@@ -115,6 +99,53 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     sentences.extend(summary.devices.0.iter().filter_map(device_sentence));
     sentences
 }
+
+/// Describes the direction in which a body first leaves its seat, with the numbers of variants in which this direction
+/// is across and along the barrels. `collapsed` is the number of variants that fall. `None` if no body leaves its seat.
+fn first_losses([across, along]: [u32; 2], collapsed: u32) -> Option<String> {
+    let in_which = |count: u32| match count {
+        all if all == collapsed => format!("In {}", all_that_fall(all)),
+        some => format!("In {some} of the {collapsed} variants that fall"),
+    };
+    let event = "a body first leaves its seat";
+    Some(match (across, along) {
+        (0, 0) => return None,
+        (0, along) => format!("{}, {event} along the barrels.", in_which(along)),
+        (across, 0) => format!("{}, {event} across the barrels.", in_which(across)),
+        (across, along) => {
+            format!("{}, {event} across the barrels, and in {along} along them.", in_which(across))
+        }
+    })
+}
+
+/// Describes the directions in which fallen barrels are displaced, with the numbers of those that are displaced mainly
+/// across and mainly along the barrels. `when` states which barrels are counted, such as " within 2 s of the first loss
+/// of a seat". `None` if no barrel falls.
+fn debris(counts: [u32; 2], when: &str) -> Option<String> {
+    let [across, along] = counts.map(f64::from);
+    let all = across + along;
+    if all == 0.0 {
+        return None;
+    }
+    let (share, direction) =
+        if across > along { (across / all, "across") } else { (along / all, "along") };
+    let barrels = format!("barrels that fall{when}");
+    Some(if share == 1.0 {
+        format!("All {barrels} end up displaced mainly {direction} the barrels.")
+    } else if share < CLEAR {
+        format!(
+            "Of the {barrels}, about as many end up displaced mainly across the barrels as mainly along them."
+        )
+    } else {
+        format!(
+            "{} of the {barrels} end up displaced mainly {direction} the barrels.",
+            percent(share)
+        )
+    })
+}
+
+/// Smallest share of fallen barrels for which the direction in which most of them are displaced is stated.
+const CLEAR: f64 = 0.55;
 
 /// Maximum number of bodies of a free scene that the console output lists individually; the output files list all
 /// bodies.
@@ -174,4 +205,64 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let Summary { run: done, .. } = summary;
     row("time", format!("{:.1} s in {} steps", done.end_time, done.steps));
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{debris, first_losses};
+
+    #[test]
+    fn the_first_loss_of_a_seat_is_stated_with_its_number_first_and_without_zeros() {
+        let along = "a body first leaves its seat along the barrels.";
+        for (counts, collapsed, words) in [
+            ([0, 15], 15, format!("In all 15 variants that fall, {along}")),
+            ([0, 2], 2, format!("In both variants that fall, {along}")),
+            ([0, 1], 1, format!("In the one variant that falls, {along}")),
+            // Three variants fall under their own weight.
+            ([0, 12], 15, format!("In 12 of the 15 variants that fall, {along}")),
+            (
+                [4, 0],
+                4,
+                "In all 4 variants that fall, a body first leaves its seat across the barrels.".to_owned(),
+            ),
+            (
+                [3, 12],
+                15,
+                "In 3 of the 15 variants that fall, a body first leaves its seat across the barrels, and in 12 \
+                 along them."
+                    .to_owned(),
+            ),
+        ] {
+            assert_eq!(first_losses(counts, collapsed), Some(words));
+        }
+        assert_eq!(first_losses([0, 0], 3), None);
+    }
+
+    #[test]
+    fn the_direction_of_most_debris_is_stated_with_its_share() {
+        let when = " within 2 s of the first loss of a seat";
+        let barrels = format!("barrels that fall{when}");
+        let end = "end up displaced mainly";
+        for (counts, words) in [
+            ([2, 98], format!("98 % of the {barrels} {end} along the barrels.")),
+            ([90, 10], format!("90 % of the {barrels} {end} across the barrels.")),
+            // A share that is not 100 % is not rounded to it.
+            ([1, 999], format!("99.9 % of the {barrels} {end} along the barrels.")),
+            ([0, 7], format!("All {barrels} {end} along the barrels.")),
+            ([7, 0], format!("All {barrels} {end} across the barrels.")),
+            (
+                [48, 52],
+                format!(
+                    "Of the {barrels}, about as many {end} across the barrels as mainly along them."
+                ),
+            ),
+        ] {
+            assert_eq!(debris(counts, when), Some(words));
+        }
+        assert_eq!(debris([0, 0], when), None);
+        assert_eq!(
+            debris([1, 3], "").as_deref(),
+            Some("75 % of the barrels that fall end up displaced mainly along the barrels.")
+        );
+    }
 }

@@ -193,6 +193,11 @@ fn all_of(variants: u32) -> String {
     }
 }
 
+/// Returns a phrase for all variants that fall, such as "both variants that fall" or "all 15 variants that fall".
+pub fn all_that_fall(collapsed: u32) -> String {
+    format!("{} that fall{}", all_of(collapsed), if collapsed == 1 { "s" } else { "" })
+}
+
 /// Returns the share of collapsed variants on which the verdict is based; variants without a verdict count as
 /// collapsed. `None` if no variant has a verdict.
 fn judged_share(spread: &Spread) -> Option<f64> {
@@ -367,8 +372,13 @@ fn exceptions((view, spread): Placed<'_>) -> Vec<String> {
             (false, 1) => "does so",
             (false, _) => "do so",
         };
-        let who =
-            if fallen == all { all_of(all) } else { format!("{fallen} of the variants that fall") };
+        let who = if fallen == all {
+            all_of(all)
+        } else if fallen == spread.collapsed {
+            all_that_fall(fallen)
+        } else {
+            format!("{fallen} of the variants that fall")
+        };
         let (their, they) = if fallen == 1 { ("its", "it is") } else { ("their", "they are") };
         sentences
             .push(format!("{place}{who} {verb} under {their} own weight, before {they} shaken."));
@@ -525,7 +535,7 @@ mod tests {
         let said = headline(&[(View::Transverse, &one)]);
         assert_eq!(
             said,
-            "Not safe. Across the barrels, 2 of 61 variants fall (1–11 %). Across the barrels, 2 of the variants that \
+            "Not safe. Across the barrels, 2 of 61 variants fall (1–11 %). Across the barrels, both variants that \
              fall do so under their own weight, before they are shaken. Across the barrels, 4 of 65 variants have no \
              verdict, because a model could not be built or a computation failed; the verdict counts such variants as falling."
         );
@@ -533,10 +543,24 @@ mod tests {
         let both = headline(&[(View::Transverse, &spread(64, 0)), (View::Longitudinal, &one)]);
         assert!(
             both.contains(
-                "). Along the barrels, 2 of the variants that fall do so under their own"
+                "). Along the barrels, both variants that fall do so under their own weight"
             ),
             "{both}"
         );
+        // Of the variants that fall, all, one or some do so under their own weight.
+        for (fallen, who) in [
+            (1, "the one variant that falls does so under its own weight, before it is shaken."),
+            (5, "all 5 variants that fall do so under their own weight, before they are shaken."),
+        ] {
+            let mut one = spread(61, fallen);
+            one.cannot_stand = fallen;
+            let said = headline(&[(View::Transverse, &one)]);
+            assert!(said.ends_with(&format!(" Across the barrels, {who}")), "{said}");
+        }
+        let mut some = spread(61, 7);
+        some.cannot_stand = 2;
+        let said = headline(&[(View::Transverse, &some)]);
+        assert!(said.contains(", 2 of the variants that fall do so under their own"), "{said}");
         // Variants that fall before they are shaken are not reported as falling when shaken.
         assert!(both.contains("Not safe. Along the barrels, 2 of 61 variants fall"), "{both}");
         // Variants without a verdict do not count as standing.
@@ -663,7 +687,8 @@ mod tests {
         let decides = "the stiffness of seats decides the outcome: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.";
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
-        let left = "After the measurement, this range is on average 55 percentage points wide instead of 83.";
+        let left =
+            "This measurement narrows the range, on average from 83 to 55 percentage points.";
         assert!(measured.contains("read how far it sinks. ") && measured.ends_with(left));
         // A constant whose effect may be zero does not decide; nor does one whose effect is certain but small.
         one.decides = vec![unknown([-0.1, 0.6])];

@@ -49,11 +49,11 @@ pub fn measure(spread: &Spread) -> Option<String> {
     let [low, high] = spread.range?;
     let (one, left) = spread.worth_measuring()?;
     Some(format!(
-        "To narrow the range of the share of stacks that fall, measure the {}: {}. After the measurement, this range \
-         is on average {:.0} percentage points wide instead of {:.0}.",
+        "To narrow the range of the share of stacks that fall, measure the {}: {}. This measurement narrows the range, \
+         on average from {:.0} to {:.0} percentage points.",
         one.name,
         one.test()?,
-        100.0 * left,
-        100.0 * (high - low)
+        100.0 * (high - low),
+        100.0 * left
     ))
 }
