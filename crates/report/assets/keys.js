@@ -8,7 +8,7 @@ const KEYS = [
   ["M", t("slow loop around the decisive moment")],
   ["C", t("next camera")],
   ["N P F", t("names, paths, forces")],
-  ["T G", t("color by stress; other runs drawn over this run")],
+  ["T G", t("color by line load; other runs drawn over this run")],
   ["+ − 0", t("zoom in, zoom out, whole picture")],
   ["W A S D", t("move the picture (in 3D, turn it); dragging does the same")],
   ["V", t("switch between 3D and the flat picture, if there are both")],

@@ -182,7 +182,7 @@ impl Envelope {
         }
         let bar = round_length(0.6 * peak);
         if bar > 0.0 {
-            let text = format!("normal stress: {} {}", number::significant(bar, 1), self.unit);
+            let text = format!("line load: {} {}", number::significant(bar, 1), self.unit);
             let text = language.text(&text);
             let (length, y) = (bar * per_stress, top + 16.0);
             let from = match room {
@@ -199,7 +199,7 @@ impl Envelope {
             };
             drawing.text("label", [at, y + 4.0], anchor, text.trim_end());
         } else {
-            drawing.text("note", [edge, top + 20.0], anchor, language.fixed("no stress"));
+            drawing.text("note", [edge, top + 20.0], anchor, language.fixed("no line load"));
         }
     }
 
