@@ -52,6 +52,11 @@ fn an_option_that_is_no_number_is_refused_in_plain_words() {
         (["protect", "--budget=lots"], "'lots' for '--budget <NUMBER>': expected a number\n"),
         (["heights", "--seed=a"], "'a' for '--seed <NUMBER>': expected a whole number\n"),
         (["run", "--variants="], "'' for '--variants <NUMBER>': "),
+        // Another name of the option is understood.
+        (
+            ["heights", "--levels=many"],
+            "'many' for '--highest <LEVELS>': expected a whole number\n",
+        ),
     ] {
         let output = barrelstack(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");

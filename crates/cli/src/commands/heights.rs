@@ -19,7 +19,7 @@ pub(crate) struct HeightsArgs {
     #[arg(long, value_name = "NAME", default_value = "bordeaux-225")]
     barrel: String,
     /// Number of levels of the highest stack.
-    #[arg(long, value_name = "LEVELS", default_value_t = HIGHEST, value_parser = clap::value_parser!(u32).range(i64::from(LOWEST)..=i64::from(HIGHEST)))]
+    #[arg(long, visible_alias = "levels", value_name = "LEVELS", default_value_t = HIGHEST, value_parser = clap::value_parser!(u32).range(i64::from(LOWEST)..=i64::from(HIGHEST)))]
     highest: u32,
     /// Simulate the stacks in three dimensions, shaken in a random horizontal direction in every run, instead of in the
     /// two planes across and along the barrels.
