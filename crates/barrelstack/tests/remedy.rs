@@ -54,7 +54,7 @@ fn what_is_said_to_suffice_is_what_its_command_makes_and_stands_in_as_many_varia
             assert!(low == 0.0 && (high - 0.505_6).abs() < 1e-3, "{high}");
             kinds.push(one.kind);
         }
-        // A rejected change has counts of its first variants and no share.
+        // A rejected change has counts of the variants that were run and no share.
         for one in found.tried.iter().filter(|one| one.variants < 8) {
             assert!(!one.suffices && one.share.is_none() && one.interval.is_none(), "{one:?}");
         }
@@ -152,6 +152,7 @@ fn sentences_say_what_suffices_and_what_does_not() {
             straps,
             height_before_straps: None,
             candidates: 9,
+            variants: 64,
             tried,
             complete: true,
             comparison,

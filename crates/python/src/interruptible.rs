@@ -51,7 +51,7 @@ impl ProgressState {
         if latest != *last
             && let Some(Latest { done, of, what }) = &latest
         {
-            progress.call1((*done, *of, what.as_ref()))?;
+            progress.call1((*done, *of, &**what))?;
             *last = latest;
         }
         Ok(())

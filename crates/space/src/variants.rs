@@ -13,7 +13,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::{
-    Advance, Judged, Observer, Plane, Remedy, RunChoice, RunCounter, Spread, Trial, planes,
+    Advance, AsItIs, Judged, Observer, Plane, Remedy, RunChoice, RunCounter, Spread, Trial, planes,
     remedy_by, verdict,
 };
 use barrelstack::watch::Ending;
@@ -311,8 +311,8 @@ struct InSpace {
 }
 
 impl Trial for InSpace {
-    fn run(&mut self, block: std::ops::Range<u32>, observer: RunCounter<'_>) -> Judged {
-        let numbers: Vec<u32> = (block.start + 1..=block.end).collect();
+    fn run(&mut self, block: &[u32], observer: RunCounter<'_>) -> Judged {
+        let numbers: Vec<u32> = block.iter().map(|index| index + 1).collect();
         let before = self.done;
         let cases = run_some(&self.plane, &self.ground, &numbers, &|done| observer(before + done));
         self.done += cases.len();
@@ -339,10 +339,15 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
         let ground = Ground::of(&plane.scenario)?;
         Ok(Box::new(InSpace { plane, ground, done: 0 }))
     };
-    let verdicts = answer.cases.iter().skip(1).map(|case| verdict(&case.result)).collect();
-    let as_it_is = (answer.summary.ensemble.iter(), vec![verdicts]);
-    remedy_by(&answer.scenario, as_it_is, &prepare, observer)
+    let results = answer.cases.iter().skip(1).map(|case| &case.result).collect();
+    let as_it_is =
+        AsItIs { spreads: answer.summary.ensemble.iter().collect(), results: vec![results] };
+    remedy_by(&answer.scenario, &as_it_is, (&prepare, FIRST), observer)
 }
+
+/// Number of variants in the first block of a change in the search for a remedy. They do not fill the lanes of a vector
+/// register: a few runs one after the other, which usually reject the change, take less time than a bundle.
+const FIRST: usize = 2;
 
 /// Loads the ground-motion records of a three-dimensional scenario, and returns the scenario with its variants.
 fn plane(scenario: &Scenario) -> Result<Plane, GroundError> {

@@ -190,20 +190,21 @@ impl Remedy {
     /// Plots the share of variants that fall after every change; `as_it_is` is this share without a change.
     fn figure(&self, as_it_is: Option<f64>) -> Figure {
         let percent = |share: f64| 100.0 * share;
-        let counted = |one: &Tried| percent(f64::from(one.failed) / f64::from(one.variants.max(1)));
+        // Of a rejected change, at least this share of all variants falls.
+        let least = |one: &Tried| percent(f64::from(one.failed) / f64::from(self.variants.max(1)));
         let rows = || self.tried.iter().enumerate();
         let intervals = rows().filter_map(|(row, one)| Some((row, one.interval?.map(percent))));
         let bars = Series::bars("95 % intervals that hold for all changes at once", intervals);
         let points = |label: &str, index: usize, known: bool| {
             let shown = rows().filter(|(_, one)| one.share.is_some() == known);
-            let (x, y) = shown.map(|(row, one)| (counted(one), Axis::row(row))).unzip();
+            let (x, y) = shown.map(|(row, one)| (least(one), Axis::row(row))).unzip();
             let style = SeriesStyle { points: true, index: Some(index), ..SeriesStyle::default() };
             Series { style, ..Series::new(label, x, y) }
         };
         let series = [
             bars,
             points("all variants", 2, true),
-            points("rejected early: share of the variants counted by then", 1, false),
+            points("rejected early: at least this share", 1, false),
         ];
         let mark = |at: f64, label: &str| Mark { at: percent(at), label: label.into() };
         let limit = mark(1.0 - self.required_share, "limit");
@@ -228,9 +229,9 @@ impl Remedy {
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
             "Changes that were tried, all of them with the same variants. A change suffices if at least {:.0} % of \
-             the variants stand{stand}. The variants are run in blocks, and a change is rejected after the first \
-             block at whose end too many variants have fallen; the share of stacks that fall with a rejected change \
-             is therefore not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes \
+             the variants stand{stand}. The variants are run in blocks, those first that are likely to fall, and a change \
+             is rejected after the first block at whose end too many variants have fallen; the share of stacks that \
+             fall with a rejected change is therefore not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes \
              that may be tried{tried}. If friction, stiffness and damping of the seats are drawn from their \
              distributions, the range over the uncertain constants contains, with a probability of 95 %, the share of \
              stacks that fall; it includes the sampling error. The last column gives the share of random draws of the \
@@ -249,7 +250,7 @@ impl Remedy {
             &self.tried,
             &[
                 ("change", "", &|one| Cell::text(name(one))),
-                ("fall", "", &|one| Cell::text(falls(one))),
+                ("fall", "", &|one| Cell::text(self.falls(one))),
                 ("share of stacks that fall, with its 95 % interval", "", &|one| {
                     Cell::maybe(one.share.zip(one.interval).map(|(share, interval)| {
                         format!("{} ({})", percent(share), interval.map(percent).join(" to "))
@@ -264,6 +265,18 @@ impl Remedy {
                 }),
             ],
         )
+    }
+}
+
+impl Remedy {
+    /// Describes the number of failures, such as "1 of 64 variants" or "at least 4 of 64 variants".
+    fn falls(&self, tried: &Tried) -> String {
+        let Tried { variants, failed, share, suffices, .. } = tried;
+        match share {
+            Some(_) => format!("{failed} of {variants} variants"),
+            None if *suffices || *variants == 0 => "not known".to_owned(),
+            None => format!("at least {failed} of {} variants", self.variants),
+        }
     }
 }
 
@@ -290,17 +303,6 @@ pub(super) fn name_of(levels: u32, pretension: Option<f64>) -> String {
                 1e-3 * pretension
             )
         }
-    }
-}
-
-/// Describes the number of failures, such as "1 of 64 variants" or "at least 4 of the first 8
-/// variants".
-fn falls(tried: &Tried) -> String {
-    let Tried { variants, failed, share, suffices, .. } = tried;
-    match share {
-        Some(_) => format!("{failed} of {variants} variants"),
-        None if *suffices || *variants == 0 => "not known".to_owned(),
-        None => format!("at least {failed} of the first {variants} variants"),
     }
 }
 

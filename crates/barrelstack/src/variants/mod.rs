@@ -42,8 +42,8 @@ pub use answer::{Advance, Answer, RunChoice, Shown, answer, answer_of};
 pub(crate) use answer::{common_number, run_together};
 pub use decides::{Constant, Fitted, ShareAt, Unknown};
 pub use remedy::{
-    Attempt, ENOUGH, Judged, Observer, PRETENSIONS, Remedy, RunCounter, Trial, Tried, Verdicts,
-    lowered, remedy, remedy_by, strapped_together,
+    AsItIs, Attempt, ENOUGH, Judged, Observer, PRETENSIONS, Remedy, RunCounter, Trial, Tried,
+    Verdicts, lowered, remedy, remedy_by, strapped_together,
 };
 pub use spread::{FEW, LEVEL, Range, Spread, verdict};
 

@@ -11,11 +11,13 @@ use std::fmt;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use barrelstack_dynamics::lanes::LANES;
 use barrelstack_fragility::{interval_of, share_less};
 use barrelstack_report::described;
 
 use self::search::{Counts, Plan};
 use super::advice::name_of;
+use super::spread::loss;
 use super::{Answer, LEVEL, Plane, Spread, decides, planes, verdict};
 use crate::device::{Straps, Ties};
 use crate::ensemble::{Audience, CaseResult, Prepared, simulate};
@@ -31,9 +33,6 @@ pub use self::search::{ENOUGH, Judged, Verdicts};
 /// A manual ratchet for 50 mm webbing is assumed to reach at most 5 kN: labels of long-handled
 /// ratchets state about 500 daN (STF, standard tension force, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
-
-/// Number of variants that a thread takes at a time: as many as it computes side by side in SIMD lanes.
-const BATCH: usize = 8;
 
 described! {
     /// Changes of a collapsed stack that were tried, and those that would have kept it up.
@@ -52,6 +51,8 @@ described! {
         /// Number of changes that may be tried, each in every plane; the intervals hold
         /// simultaneously for all these changes.
         pub candidates: u32,
+        /// Number of variants with which a change is tried, unless it is rejected earlier.
+        pub variants: u32,
         /// Every change that was tried; changes of height come first.
         pub tried: Vec<Tried>,
         /// True if the search is complete; false if the search was stopped.
@@ -74,8 +75,8 @@ described! {
         pub changes: Vec<String>,
         /// True if enough variants stand.
         pub suffices: bool,
-        /// Number of variants counted: all variants, or only those with the lowest numbers if the
-        /// change was rejected early.
+        /// Number of variants counted: all variants, or, if the change was rejected early, those that were run by then.
+        /// Variants that are likely to fall are run first.
         pub variants: u32,
         /// Number of counted variants that collapse or have no verdict, in the plane with the
         /// largest such number.
@@ -146,9 +147,9 @@ pub type RunCounter<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 pub trait Trial {
     /// Runs the variants whose indices are in `block`, in every plane; index 0 is the variant with the number 1.
     ///
-    /// Returns the verdicts in each plane, or `Break` if the observer cancels. The observer receives the number of
-    /// finished runs of all blocks so far.
-    fn run(&mut self, block: Range<u32>, observer: RunCounter<'_>) -> Judged;
+    /// Returns the verdicts in each plane, in the order of the block, or `Break` if the observer cancels. The observer
+    /// receives the number of finished runs of all blocks so far.
+    fn run(&mut self, block: &[u32], observer: RunCounter<'_>) -> Judged;
 }
 
 /// Function that prepares the variants of a changed stack.
@@ -172,25 +173,51 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
     };
     let of = |plane: &Plane| {
         let shown = answer.shown().find(|shown| shown.run.assembly.view == plane.view())?;
-        let results = &shown.variants.as_ref()?.results;
-        Some(results.iter().skip(1).map(verdict).collect())
+        Some(shown.variants.as_ref()?.results.get(1..)?.iter().collect())
     };
-    let verdicts = planes(&answer.scenario)?.iter().map_while(of).collect();
-    let as_it_is = (spreads.iter().map(|(_, spread)| *spread), verdicts);
-    remedy_by(&answer.scenario, as_it_is, &prepare, observer)
+    let results = planes(&answer.scenario)?.iter().map_while(of).collect();
+    let as_it_is = AsItIs { spreads: spreads.iter().map(|(_, spread)| *spread).collect(), results };
+    remedy_by(&answer.scenario, &as_it_is, (&prepare, LANES), observer)
 }
 
-/// Searches for a remedy like [`remedy`], with runs prepared by `prepare`; `spreads` are the
-/// statistics of the stack without changes, and `as_it_is` the verdicts of its variants.
+/// Statistics and results of the stack without changes.
+#[derive(Clone, Debug)]
+pub struct AsItIs<'a> {
+    /// Statistics of the variants in each plane.
+    pub spreads: Vec<&'a Spread>,
+    /// Results of the variants in each plane, in the order of their numbers.
+    pub results: Vec<Vec<&'a CaseResult>>,
+}
+
+impl AsItIs<'_> {
+    fn verdicts(&self) -> Verdicts {
+        self.results.iter().map(|all| all.iter().map(|one| verdict(one)).collect()).collect()
+    }
+
+    /// Returns the indices of a number of variants, those that lost a seat earliest first, in any plane.
+    fn order(&self, variants: usize) -> Vec<u32> {
+        let lost = |variant: &u32| {
+            let results = self.results.iter().filter_map(|all| all.get(*variant as usize));
+            results.filter_map(|one| loss(one)).fold(f64::INFINITY, f64::min)
+        };
+        let mut order: Vec<u32> = (0..u32::try_from(variants).unwrap_or(u32::MAX)).collect();
+        order.sort_by(|one, other| lost(one).total_cmp(&lost(other)));
+        order
+    }
+}
+
+/// Searches for a remedy like [`remedy`], with runs prepared by `prepare`. The first block of a change has `first`
+/// variants, or more if fewer cannot reject a change.
 ///
 /// # Errors
 /// As [`remedy`].
-pub fn remedy_by<'a>(
+pub fn remedy_by(
     scenario: &Scenario,
-    (spreads, as_it_is): (impl Iterator<Item = &'a Spread>, Verdicts),
-    prepare: &Prepare<'_>,
+    as_it_is: &AsItIs<'_>,
+    (prepare, first): (&Prepare<'_>, usize),
     observer: Observer<'_>,
 ) -> Result<Option<Remedy>, GroundError> {
+    let spreads = as_it_is.spreads.iter().copied();
     if spreads.filter_map(Spread::largest_share).reduce(f64::max).is_none_or(enough) {
         return Ok(None);
     }
@@ -201,7 +228,7 @@ pub fn remedy_by<'a>(
         return Ok(None);
     }
     let mut found = Remedy { required_share: f64::from(ENOUGH) / 100.0, ..Remedy::default() };
-    look(scenario, &as_it_is, (prepare, observer), &mut found)?;
+    look(scenario, as_it_is, (prepare, first, observer), &mut found)?;
     Ok(Some(found))
 }
 
@@ -213,8 +240,8 @@ fn enough(share: f64) -> bool {
 /// Tries all changes of a scenario, and stores the results in `found`.
 fn look(
     scenario: &Scenario,
-    as_it_is: &Verdicts,
-    (prepare, observer): (&Prepare<'_>, Observer<'_>),
+    as_it_is: &AsItIs<'_>,
+    (prepare, first, observer): (&Prepare<'_>, usize, Observer<'_>),
     found: &mut Remedy,
 ) -> Result<(), GroundError> {
     let Some(stack) = scenario.stack() else { return Ok(()) };
@@ -226,12 +253,13 @@ fn look(
     let plan = Plan {
         heights,
         straps: changes.len() - heights,
-        variants: planes.iter().map(Plane::count).max().unwrap_or(0),
+        order: as_it_is.order(planes.iter().map(Plane::count).max().unwrap_or(0) as usize),
+        first: u32::try_from(first).unwrap_or(u32::MAX),
         planes: planes.len(),
     };
     let mut started: Vec<Option<Started>> = changes.iter().map(|_| None).collect();
     let mut count = 0;
-    let mut run = |change: usize, block: Range<u32>| {
+    let mut run = |change: usize, block: &[u32]| {
         let Started { trial, number, stack } = match &mut started[change] {
             Some(started) => started,
             none => {
@@ -250,10 +278,10 @@ fn look(
         .collect();
     let draws: Vec<Option<Vec<f64>>> = counts
         .iter()
-        .map(|counts| counts.as_ref().filter(|counts| counts.whole(&plan)))
-        .map(|counts| decides::draws(&planes, &counts?.verdicts))
+        .map(|counts| counts.as_ref().and_then(|counts| counts.verdicts(&plan)))
+        .map(|verdicts| decides::draws(&planes, &verdicts?))
         .collect();
-    let before = decides::draws(&planes, as_it_is);
+    let before = decides::draws(&planes, &as_it_is.verdicts());
     for (tried, draws) in tried.iter_mut().zip(&draws) {
         let Some((tried, draws)) = tried.as_mut().zip(draws.as_ref()) else { continue };
         tried.range = Some(range(draws));
@@ -270,6 +298,7 @@ fn look(
     (found.height, found.straps) = (first(lower), first(strapped));
     found.tried = tried.into_iter().flatten().collect();
     found.candidates = u32::try_from(plan.changes()).unwrap_or(u32::MAX);
+    found.variants = plan.variants();
     found.complete = complete;
     Ok(())
 }
@@ -420,7 +449,7 @@ impl InPlanes {
 }
 
 impl Trial for InPlanes {
-    fn run(&mut self, block: Range<u32>, observer: RunCounter<'_>) -> Judged {
+    fn run(&mut self, block: &[u32], observer: RunCounter<'_>) -> Judged {
         let stopped = AtomicBool::new(false);
         let canceled = || {
             if observer(self.done.load(Ordering::Relaxed)).is_break() {
@@ -428,17 +457,17 @@ impl Trial for InPlanes {
             }
             stopped.load(Ordering::Relaxed)
         };
-        let places = block.start as usize + 1..block.end as usize + 1;
-        let batches: Vec<(usize, &[Prepared])> = self
+        let batches: Vec<(usize, Vec<Prepared>)> = self
             .cases
             .iter()
             .enumerate()
             .flat_map(|(plane, cases)| {
-                let block = cases.get(places.clone()).unwrap_or_default();
-                block.chunks(BATCH).map(move |batch| (plane, batch))
+                let case = |variant: &u32| cases.get(*variant as usize + 1).cloned();
+                let batch = move |batch: &[u32]| (plane, batch.iter().filter_map(case).collect());
+                block.chunks(LANES).map(batch)
             })
             .collect();
-        let work = |(_, cases): &(usize, &[Prepared])| {
+        let work = |(_, cases): &(usize, Vec<Prepared>)| {
             let mut on_case = |_: &CaseResult| {
                 self.done.fetch_add(1, Ordering::Relaxed);
             };

@@ -242,7 +242,7 @@ pub(super) fn collapsed(result: &CaseResult) -> bool {
 }
 
 /// Returns the time (s) at which the first body lost its seat; `None` if the case did not collapse.
-fn loss(result: &CaseResult) -> Option<f64> {
+pub(super) fn loss(result: &CaseResult) -> Option<f64> {
     match &result.outcome {
         Ok(Outcome::Collapse { time, .. }) => Some(*time),
         _ => None,

@@ -2,14 +2,16 @@
 //!
 //! The search does not depend on how variants are run, so whole searches can be simulated in tests.
 //!
-//! Variants are counted in whole blocks, in the order of their numbers. Counting runs as they
-//! finish would be biased towards collapses, because runs that collapse end early. A change is
-//! rejected after the first block that brings it above the admissible number of failures. The
-//! failure share of a rejected change is unknown: the counted variants are a biased sample, because
-//! counting stopped due to their failures. If all variants of a change were counted, its failure
-//! share has a confidence interval. These intervals hold simultaneously for all changes and planes
-//! of the search (Bonferroni), so choosing among the changes does not invalidate them.
+//! Variants are run in blocks, those that are most likely to fall first: those that fell with most
+//! of the changes tried before, then those that fell earliest without a change. A change is rejected
+//! after the first block that brings it above the admissible number of failures among all variants,
+//! so the order does not affect which changes suffice, only how many runs a rejected change takes.
+//! The failure share of a rejected change is unknown, since the counted variants are a biased
+//! sample. If all variants of a change were counted, its failure share has a confidence interval.
+//! These intervals hold simultaneously for all changes and planes of the search (Bonferroni), so
+//! choosing among the changes does not invalidate them.
 
+use std::cmp::Reverse;
 use std::ops::{ControlFlow, Range};
 
 use barrelstack_fragility::{Interval, clopper_pearson};
@@ -20,22 +22,23 @@ use super::Attempt;
 /// Share (%) of variants that must stand in every plane.
 pub const ENOUGH: u32 = 95;
 
-/// Number of variants in the first block of a change: as many as one core computes side by side in SIMD lanes.
-const FIRST: u32 = 8;
-
-/// Number of variants in every later block.
+/// Number of variants in every block after the first.
 const BLOCK: u32 = 16;
 
 /// Candidates of a search, and the number of variants that are simulated for each.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Plan {
     /// Number of changes of height. They are the first changes of the plan, from the highest to the lowest
     /// stack, and are tried until one suffices.
     pub(super) heights: usize,
     /// Number of strap pretensions. In the plan, they follow the changes of height, from loose to tight.
     pub(super) straps: usize,
-    /// Number of variants that are simulated for each change.
-    pub(super) variants: u32,
+    /// Indices of the variants, those that fell earliest without a change first; index 0 is the variant with the number
+    /// 1. All of them are simulated for each change that suffices.
+    pub(super) order: Vec<u32>,
+    /// Number of variants in the first block of a change. If that number could not reject a change, the block has as
+    /// many variants as are needed to reject it.
+    pub(super) first: u32,
     /// Number of planes; enough variants must stand in each.
     pub(super) planes: usize,
 }
@@ -53,7 +56,7 @@ impl Plan {
             number: 0,
             candidates: self.changes(),
             done: 0,
-            of: self.variants as usize * self.planes,
+            of: self.order.len() * self.planes,
             things: if self.planes == 1 { "variants" } else { "runs" },
         }
     }
@@ -64,49 +67,76 @@ impl Plan {
         1.0 - (1.0 - LEVEL) / (self.changes() * self.planes).max(1) as f64
     }
 
-    /// Returns the indices of the block of variants that follows the first `ran` variants; index 0 is the variant with
-    /// the number 1.
-    fn block(&self, ran: u32) -> Range<u32> {
-        let size = if ran == 0 { FIRST } else { BLOCK };
-        ran..ran.saturating_add(size).min(self.variants)
+    /// Returns the number of variants with which a change is tried, if it is not rejected.
+    pub(super) fn variants(&self) -> u32 {
+        u32::try_from(self.order.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Returns the largest number of variants that may fail with a change that suffices.
+    fn admissible(&self) -> u32 {
+        let most = u64::from(self.variants()) * u64::from(100 - ENOUGH) / 100;
+        u32::try_from(most).unwrap_or(u32::MAX)
+    }
+
+    /// Returns the number of variants in the block of a change that follows the first `ran` variants.
+    fn block(&self, ran: u32) -> usize {
+        let size = if ran == 0 { self.first.max(self.admissible() + 1) } else { BLOCK };
+        size as usize
     }
 }
 
 /// Numbers of counted and of failed variants of a change that was tried, with the verdicts.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counts {
-    /// Number of counted variants; these are the variants with the lowest numbers.
+    /// Number of counted variants.
     pub(super) ran: u32,
     /// Number of counted variants that failed, in the plane with the most failures.
     pub(super) failed: u32,
-    /// Verdicts of the counted variants.
-    pub(super) verdicts: Verdicts,
+    /// For each plane, the verdicts of all variants in the order of their numbers; `None` for a variant that was not
+    /// counted.
+    verdicts: Vec<Vec<Option<Verdict>>>,
 }
 
 impl Counts {
-    fn new(planes: usize) -> Self {
-        Self { ran: 0, failed: 0, verdicts: vec![Vec::new(); planes] }
+    fn new(plan: &Plan) -> Self {
+        Self { ran: 0, failed: 0, verdicts: vec![vec![None; plan.order.len()]; plan.planes] }
     }
 
-    fn add(&mut self, block: &Range<u32>, verdicts: Verdicts) {
-        self.ran = block.end;
+    /// Returns `true` if a variant was counted.
+    fn has(&self, variant: u32) -> bool {
+        self.verdicts.iter().any(|all| all.get(variant as usize).is_some_and(Option::is_some))
+    }
+
+    fn add(&mut self, block: &[u32], verdicts: &Verdicts) {
         for (all, more) in self.verdicts.iter_mut().zip(verdicts) {
-            all.extend(more);
+            for (variant, verdict) in block.iter().zip(more) {
+                all[*variant as usize] = Some(*verdict);
+            }
         }
-        let failed = |all: &Vec<_>| all.iter().filter(|one| **one != Some(false)).count();
-        let most = self.verdicts.iter().map(failed).max().unwrap_or(0);
+        self.ran += u32::try_from(block.len()).unwrap_or(u32::MAX);
+        let failures = |all: &Vec<Option<Verdict>>| {
+            all.iter().flatten().filter(|verdict| failed(**verdict)).count()
+        };
+        let most = self.verdicts.iter().map(failures).max().unwrap_or(0);
         self.failed = u32::try_from(most).unwrap_or(u32::MAX);
+    }
+
+    /// Returns the verdicts in each plane, in the order of the numbers of the variants; `None` unless all variants were
+    /// counted.
+    pub(super) fn verdicts(&self, plan: &Plan) -> Option<Verdicts> {
+        let all = |all: &Vec<Option<Verdict>>| all.iter().copied().collect();
+        self.whole(plan).then(|| self.verdicts.iter().map(all).collect())?
     }
 
     /// `true` if the number of failures already exceeds the number that is admissible among all
     /// variants.
     fn rejected(&self, plan: &Plan) -> bool {
-        !may_fail(self.failed, plan.variants)
+        self.failed > plan.admissible()
     }
 
     /// `true` if all variants were counted, so that they are an unbiased sample.
     pub(super) fn whole(&self, plan: &Plan) -> bool {
-        plan.variants > 0 && self.ran == plan.variants
+        self.ran > 0 && self.ran == plan.variants()
     }
 
     pub(super) fn suffices(&self, plan: &Plan) -> bool {
@@ -129,20 +159,27 @@ pub(super) struct Found {
     pub(super) complete: bool,
 }
 
-/// For each plane, whether each variant collapses, in the order of their numbers. A variant without a verdict is `None`
-/// and also counts as a failure.
-pub type Verdicts = Vec<Vec<Option<bool>>>;
+/// Whether a variant collapses. A variant without a verdict is `None` and also counts as a failure.
+type Verdict = Option<bool>;
 
-/// Verdicts of a block of variants, or `Break` if the block was canceled.
+/// For each plane, the verdict of each variant.
+pub type Verdicts = Vec<Vec<Verdict>>;
+
+/// Verdicts of a block of variants, in its order, or `Break` if the block was canceled.
 pub type Judged = ControlFlow<(), Verdicts>;
 
 /// Function that runs a block of variants of one change. Its arguments are the index of the change and the indices of
 /// the variants; index 0 is the variant with the number 1.
-type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Judged, E> + 'a;
+type RunBlock<'a, E> = dyn FnMut(usize, &[u32]) -> Result<Judged, E> + 'a;
+
+fn failed(verdict: Verdict) -> bool {
+    verdict != Some(false)
+}
 
 /// Tries changes until the highest sufficient stack and the loosest sufficient straps are found.
 pub(super) fn search<E>(plan: &Plan, run: &mut RunBlock<'_, E>) -> Result<Found, E> {
-    let mut all = Search { plan, counts: vec![None; plan.changes()], run };
+    let (counts, failures) = (vec![None; plan.changes()], vec![0; plan.order.len()]);
+    let mut all = Search { plan, counts, failures, run };
     let complete = all.heights()?.is_continue() && all.straps()?.is_continue();
     Ok(Found { counts: all.counts, complete })
 }
@@ -150,25 +187,39 @@ pub(super) fn search<E>(plan: &Plan, run: &mut RunBlock<'_, E>) -> Result<Found,
 struct Search<'a, 'b, E> {
     plan: &'a Plan,
     counts: Vec<Option<Counts>>,
+    /// For each variant, the number of planes and changes in which it failed.
+    failures: Vec<u32>,
     run: &'a mut RunBlock<'b, E>,
 }
 
 impl<E> Search<'_, '_, E> {
+    /// Returns the variants of a change that are run next.
+    fn next(&self, counts: &Counts) -> Vec<u32> {
+        let order = self.plan.order.iter().copied();
+        let mut left: Vec<u32> = order.filter(|variant| !counts.has(*variant)).collect();
+        // The sort is stable, so the order of the plan decides where the numbers of failures are equal.
+        left.sort_by_key(|variant| Reverse(self.failures[*variant as usize]));
+        left.truncate(self.plan.block(counts.ran));
+        left
+    }
+
     /// Runs blocks of a change until the given number of variants is counted or the change is
     /// rejected.
     fn try_change(&mut self, change: usize, until: u32) -> Result<ControlFlow<(), Counts>, E> {
-        let mut counts =
-            self.counts[change].take().unwrap_or_else(|| Counts::new(self.plan.planes));
-        while counts.ran < until.min(self.plan.variants) && !counts.rejected(self.plan) {
-            let block = self.plan.block(counts.ran);
-            match (self.run)(change, block.clone())? {
-                ControlFlow::Continue(verdicts) => counts.add(&block, verdicts),
+        let mut counts = self.counts[change].take().unwrap_or_else(|| Counts::new(self.plan));
+        while counts.ran < until.min(self.plan.variants()) && !counts.rejected(self.plan) {
+            let block = self.next(&counts);
+            let ControlFlow::Continue(verdicts) = (self.run)(change, &block)? else {
                 // A canceled block does not count.
-                ControlFlow::Break(()) => {
-                    self.counts[change] = Some(counts);
-                    return Ok(ControlFlow::Break(()));
+                self.counts[change] = Some(counts);
+                return Ok(ControlFlow::Break(()));
+            };
+            for verdicts in &verdicts {
+                for (variant, verdict) in block.iter().zip(verdicts) {
+                    self.failures[*variant as usize] += u32::from(failed(*verdict));
                 }
             }
+            counts.add(&block, &verdicts);
         }
         self.counts[change] = Some(counts.clone());
         Ok(ControlFlow::Continue(counts))
@@ -199,18 +250,13 @@ impl<E> Search<'_, '_, E> {
         let (mut from, mut to) = (self.plan.heights, self.plan.changes());
         while from < to {
             let middle = usize::midpoint(from, to);
-            let ControlFlow::Continue(counts) = self.try_change(middle, FIRST)? else {
+            let ControlFlow::Continue(counts) = self.try_change(middle, 1)? else {
                 return Ok(ControlFlow::Break(()));
             };
             if counts.rejected(self.plan) { from = middle + 1 } else { to = middle }
         }
         self.first_of(from..self.plan.changes())
     }
-}
-
-/// `true` if the number of failures is at most `100 − ENOUGH` percent of the number of variants.
-fn may_fail(failed: u32, of: u32) -> bool {
-    u64::from(failed) * 100 <= u64::from(of) * u64::from(100 - ENOUGH)
 }
 
 #[cfg(test)]
@@ -236,7 +282,7 @@ mod tests {
     type Chance = dyn Fn(&mut Random) -> f64;
 
     fn simulate(searches: u32, chance: &Chance) -> Simulated {
-        let plan = Plan { heights: 4, straps: 5, variants: 64, planes: 2 };
+        let plan = Plan { heights: 4, straps: 5, order: (0..64).collect(), first: 8, planes: 2 };
         let mut found = Simulated {
             stated: 0,
             covered: 0,
@@ -253,10 +299,10 @@ mod tests {
             for part in [0..plan.heights, plan.heights..plan.changes()] {
                 chances[part].sort_by(|a, b| b[0].max(b[1]).total_cmp(&a[0].max(a[1])));
             }
-            let mut run = |change: usize, block: Range<u32>| {
+            let mut run = |change: usize, block: &[u32]| {
                 let planes: [f64; 2] = chances[change];
                 let verdicts = planes
-                    .map(|chance| block.clone().map(|_| Some(random.uniform() < chance)).collect());
+                    .map(|chance| block.iter().map(|_| Some(random.uniform() < chance)).collect());
                 Ok::<_, Infallible>(ControlFlow::Continue(verdicts.to_vec()))
             };
             let Ok(all) = search(&plan, &mut run);
@@ -314,29 +360,35 @@ mod tests {
         }
     }
 
+    /// Plan with one change of height, in two planes.
+    fn one_change(variants: u32, first: u32) -> Plan {
+        Plan { heights: 1, straps: 0, order: (0..variants).rev().collect(), first, planes: 2 }
+    }
+
     #[test]
     fn a_rejected_change_has_counts_of_whole_blocks_and_no_share() {
-        let plan = Plan { heights: 1, straps: 0, variants: 64, planes: 2 };
+        let plan = one_change(64, 8);
         let mut blocks = Vec::new();
-        let mut run = |_, block: Range<u32>| {
+        let mut run = |_, block: &[u32]| {
             // In both planes, the first variant collapses; in the second plane, the second variant has no verdict.
             let mut verdicts = vec![vec![Some(false); block.len()]; 2];
             (verdicts[0][0], verdicts[1][0], verdicts[1][1]) = (Some(true), Some(true), None);
-            blocks.push(block);
+            blocks.push(block.to_vec());
             Ok::<_, Infallible>(ControlFlow::Continue(verdicts))
         };
         let Ok(found) = search(&plan, &mut run);
         let counts = found.counts[0].clone().unwrap_or_else(|| panic!("it was tried"));
-        assert_eq!(blocks, [0..8, 8..24]);
+        let expected: [Vec<u32>; 2] = [(56..64).rev().collect(), (40..56).rev().collect()];
+        assert_eq!(blocks, expected);
         assert_eq!((counts.ran, counts.failed, counts.interval(&plan)), (24, 4, None));
-        assert!(!counts.suffices(&plan));
+        assert!(!counts.suffices(&plan) && counts.verdicts(&plan).is_none());
     }
 
     #[test]
     fn a_block_that_is_broken_off_does_not_count() {
-        let plan = Plan { heights: 0, straps: 2, variants: 64, planes: 1 };
-        let mut run = |_, block: Range<u32>| {
-            let over = block.start > 0;
+        let plan = Plan { heights: 0, straps: 2, order: (0..64).collect(), first: 8, planes: 1 };
+        let mut run = |_, block: &[u32]| {
+            let over = block[0] > 0;
             Ok::<_, Infallible>(if over {
                 ControlFlow::Break(())
             } else {
@@ -348,5 +400,76 @@ mod tests {
         assert!(
             found.counts.iter().flatten().all(|counts| counts.ran == 8 && !counts.suffices(&plan))
         );
+    }
+
+    /// The first block can reject a change, even if fewer variants would fill the cores.
+    #[test]
+    fn the_first_block_is_large_enough_to_reject_a_change() {
+        for (variants, admissible) in [(16, 0), (19, 0), (20, 1), (64, 3), (1000, 50)] {
+            let plan = one_change(variants, 2);
+            assert_eq!(plan.admissible(), admissible);
+            let mut ran = Vec::new();
+            let mut run = |_, block: &[u32]| {
+                ran.push(block.len());
+                let all = vec![Some(true); block.len()];
+                Ok::<_, Infallible>(ControlFlow::Continue(vec![all.clone(), all]))
+            };
+            let Ok(_) = search(&plan, &mut run);
+            assert_eq!(ran, [(admissible as usize + 1).max(2)]);
+        }
+    }
+
+    /// Variants that failed with an earlier change are run first, and the verdicts keep the order of the numbers.
+    #[test]
+    fn variants_that_failed_before_come_first() {
+        // Of four changes of height, each is rejected by one variant, except for the last.
+        let plan = Plan { heights: 4, straps: 0, order: (0..16).collect(), first: 2, planes: 1 };
+        let fails = |change: usize, variant: u32| change < 3 && variant == 13;
+        let mut blocks = Vec::new();
+        let mut run = |change: usize, block: &[u32]| {
+            blocks.push((change, block.to_vec()));
+            let verdicts = block.iter().map(|variant| Some(fails(change, *variant))).collect();
+            Ok::<_, Infallible>(ControlFlow::Continue(vec![verdicts]))
+        };
+        let Ok(found) = search(&plan, &mut run);
+        let counts: Vec<(u32, u32)> =
+            found.counts.iter().flatten().map(|counts| (counts.ran, counts.failed)).collect();
+        assert_eq!(counts, [(16, 1), (2, 1), (2, 1), (16, 0)]);
+        let blocks: Vec<_> = blocks.into_iter().filter(|(_, block)| block.len() == 2).collect();
+        assert_eq!(blocks[0], (0, vec![0, 1]));
+        assert_eq!(blocks[1..], [1, 2, 3].map(|change| (change, vec![13, 0])));
+        let whole = found.counts[0].as_ref().and_then(|counts| counts.verdicts(&plan));
+        let expected = (0..16).map(|variant| Some(fails(0, variant))).collect();
+        assert_eq!(whole, Some(vec![expected]));
+    }
+
+    /// Whatever the order, the same changes suffice with the same numbers of failures.
+    #[test]
+    fn the_order_of_the_variants_does_not_affect_which_changes_suffice() {
+        for seed in 1..200 {
+            let mut random = Random::new(seed);
+            let heights = 4;
+            let chance = 0.15 * random.uniform();
+            let fails: Vec<Vec<bool>> = (0..heights)
+                .map(|_| (0..64).map(|_| random.uniform() < chance).collect())
+                .collect();
+            let mut sufficient = Vec::new();
+            for (first, shift) in [(8, 0), (2, 17), (64, 40)] {
+                let order = (0..64).map(|index| (index + shift) % 64).collect();
+                let plan = Plan { heights, straps: 0, order, first, planes: 1 };
+                let mut run = |change: usize, block: &[u32]| {
+                    let fails = &fails[change];
+                    let verdicts = block.iter().map(|one| Some(fails[*one as usize])).collect();
+                    Ok::<_, Infallible>(ControlFlow::Continue(vec![verdicts]))
+                };
+                let Ok(found) = search(&plan, &mut run);
+                let suffices = |counts: &Option<Counts>| {
+                    let counts = counts.as_ref().filter(|counts| counts.suffices(&plan))?;
+                    Some((counts.failed, counts.interval(&plan), counts.verdicts(&plan)))
+                };
+                sufficient.push(found.counts.iter().map(suffices).collect::<Vec<_>>());
+            }
+            assert!(sufficient.windows(2).all(|pair| pair[0] == pair[1]), "seed {seed}");
+        }
     }
 }
