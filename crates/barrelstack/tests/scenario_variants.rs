@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use barrelstack_motion::IntensityMeasure;
+use barrelstack_report::Language;
 
 use barrelstack::scenario::{
     Amplitude, Basis, BodyOverride, Cradle, Damping, Fill, Friction, MeasuredOn, Method,
@@ -370,12 +371,15 @@ fn a_title_says_what_is_run() {
     let own = "schema = 1\nextends = \"demo-napa\"\ntitle = \"Mine\"";
     assert_eq!(title(own, &[]), "Mine");
     assert_eq!(title(own, &["title=Yours", "stack.levels=4"]), "Yours");
+    // A title of a built-in scenario, or a copy of it, would become untrue.
+    let copied = Scenario::builtin("demo-napa", &[]).unwrap().to_resolved_toml();
     assert_eq!(
-        title(own, &["stack.levels=4"]),
+        title(&copied, &["stack.levels=4"]),
         "Eight barrels on four levels, South Napa 2014-08-24 M6.0"
     );
     let inherited = "schema = 1\nextends = \"candia-8-barrels\"\n[stack]\nlevels = 3";
     assert_eq!(title(inherited, &[]), "Six barrels on three levels, sine of 1.07 s");
+    let own = "schema = 1\nextends = \"demo-napa\"\ntitle = \"Ten barrels on five levels, South Napa 2014\"";
     // In space the rows behind each other count, in a plane what it cuts.
     let rows = ["stack.levels=4", "stack.columns=4", "stack.columns_along=3"];
     let of = |view: &str| {
@@ -383,4 +387,51 @@ fn a_title_says_what_is_run() {
     };
     assert_eq!(of("stack.view=spatial"), "48 barrels on four levels, South Napa 2014-08-24 M6.0");
     assert!(of("stack.view=transverse").starts_with("16 barrels on four levels"));
+}
+
+#[test]
+fn a_title_of_the_users_own_stays_and_what_is_changed_follows() {
+    let own = "schema = 1\nextends = \"demo-napa\"\ntitle = \"My stack\"";
+    let parsed = |text: &str, changes: &[&str]| {
+        let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
+        Scenario::parse("mine.toml", text, &changes).unwrap()
+    };
+    let mine = |changes: &[&str]| parsed(own, changes);
+    assert_eq!(mine(&["run.duration=5 s"]).title, "My stack");
+    assert_eq!(mine(&["motion.record=a/my-site.AT2"]).title, "My stack: my-site.AT2");
+    let both = mine(&["stack.levels=3", "motion.record=a/my-site.AT2"]);
+    assert_eq!(both.title, "My stack: six barrels on three levels, my-site.AT2");
+    assert_eq!(
+        Language::Spanish.text(&both.title),
+        "My stack: seis barricas en tres niveles, my-site.AT2"
+    );
+    assert_eq!(
+        mine(&["interface.barrel-rack.friction.coefficient=0.2"]).title,
+        "My stack, changed"
+    );
+    // Further changes do not repeat words, and neither do changes to the resolved text.
+    let set =
+        |scenario: &Scenario, change: &str| scenario.with(&[change.to_owned()]).unwrap().title;
+    assert_eq!(set(&both, "stack.levels=2"), "My stack: four barrels on two levels, my-site.AT2");
+    assert_eq!(set(&both, "stack.levels=5"), "My stack: my-site.AT2");
+    let resolved = |changes: &[&str]| mine(changes).to_resolved_toml();
+    let levels = ["stack.levels=2"];
+    for changes in [&["stack.levels=3"][..], &["interface.barrel-rack.friction.coefficient=0.2"]] {
+        let again = parsed(&resolved(changes), &levels).title;
+        assert_eq!(again, "My stack: four barrels on two levels");
+    }
+    let file = ["motion.record=a/my-site.AT2"];
+    assert_eq!(parsed(&resolved(&file), &levels).title, "My stack: four barrels on two levels");
+    // A record in memory is a change like a record in a file.
+    let record = barrelstack_motion::bundled("napa-college-2014").unwrap();
+    let shaken = mine(&[]).with_record(&record).unwrap();
+    assert!(shaken.title.starts_with("My stack: "), "{}", shaken.title);
+    assert!(shaken.with_record(&record).unwrap().title == shaken.title);
+    // What the title already says is not repeated.
+    let named = own.replace("My stack", "My stack under my-site.AT2");
+    assert_eq!(parsed(&named, &file).title, "My stack under my-site.AT2");
+    // A generated title in a resolved text is not the user's own.
+    let generated = Scenario::builtin("demo-napa", &["stack.levels=3".to_owned()]).unwrap();
+    let again = parsed(&generated.to_resolved_toml(), &levels).title;
+    assert!(again.starts_with("Four barrels on two levels, "), "{again}");
 }

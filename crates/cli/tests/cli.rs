@@ -462,6 +462,20 @@ fn every_listed_scenario_can_be_shown_checked_and_resolved() {
         }
     }
     let fields = stdout(&barrelstack(["scenarios", "fields"]));
+    // Which pair to set: seats, or impacts.
+    for (pair, kind) in [
+        ("rack-ground", "Seat"),
+        ("barrel-rack", "Seat"),
+        ("rack-rack", "Seat"),
+        ("barrel-barrel", "Impact"),
+        ("barrel-ground", "Impact"),
+        ("fallen-barrel-rack", "Impact"),
+        ("fallen-rack-ground", "Impact"),
+        ("fallen-rack-rack", "Impact"),
+    ] {
+        let row = format!("| `{pair}` | a table | none | {kind}: ");
+        assert!(fields.contains(&row), "no {row:?}");
+    }
     assert!(fields.contains("candia-2008"));
     let schema = json(&stdout(&barrelstack(["scenarios", "schema"])));
     assert!(schema["$defs"]["rack"].to_string().contains("candia-2008"), "{schema}");

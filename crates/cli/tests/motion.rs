@@ -87,9 +87,28 @@ fn every_number_of_the_table_has_a_unit() {
 fn raw_records_are_distinguished() {
     let output = barrelstack(["motion", "info", "napa-college-2014"]);
     assert!(stderr(&output).contains("a raw record"), "{}", stderr(&output));
+    let printed = stdout(&output);
+    for words in
+        ["`run` removes", "high-pass corner at 0.1 Hz", "--corners auto", "motion.processing=none"]
+    {
+        assert!(printed.contains(words), "no {words:?} in {printed}");
+    }
     let (_folder, file) = napa();
     let output = barrelstack(["motion", "info", text(&file)]);
     assert_eq!(stderr(&output), "");
+    assert!(!stdout(&output).contains("`run`"), "{}", stdout(&output));
+}
+
+#[test]
+fn a_part_of_a_record_says_how_to_join_the_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = folder.path().join("parte1.v1");
+    let example = "../motion/tests/data/renadic/example.v1";
+    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(example), &part).unwrap();
+    let said = stderr(&barrelstack(["motion", "info", text(&part)]));
+    for words in ["such as parte2.v1", "motion convert FIRST SECOND --join", "--record"] {
+        assert!(said.contains(words), "no {words:?} in {said}");
+    }
 }
 
 #[test]

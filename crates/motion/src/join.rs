@@ -4,6 +4,9 @@ use crate::error::MotionError;
 use crate::math;
 use crate::record::{Channel, Record, Stage};
 
+/// Words of the warning about a file that contains a part of a record.
+pub(crate) const PART: &str = "one part of a longer record";
+
 /// Shortest overlap of two parts (s).
 const SHORTEST_OVERLAP: f64 = 1.0;
 /// Largest root-mean-square difference between two parts in their overlap, divided by the root mean
@@ -141,8 +144,13 @@ impl Record {
         for part in rest {
             join_pair(&mut joined, part)?;
         }
-        joined.warnings.retain(|warning| !warning.message.contains("one part of a longer record"));
+        joined.warnings.retain(|warning| !warning.message.contains(PART));
         Ok(joined)
+    }
+
+    /// Returns `true` if the name of the file indicates one part of a longer record, which [`Record::join`] completes.
+    pub fn is_part(&self) -> bool {
+        self.warnings.iter().any(|warning| warning.message.contains(PART))
     }
 }
 

@@ -285,6 +285,26 @@ fn parts_are_joined_where_they_repeat() {
 }
 
 #[test]
+fn a_part_of_a_record_names_another_part() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/renadic/example.v1");
+    let bytes = std::fs::read(file).unwrap();
+    let read = |name: &str| read(&bytes, name, &ReadOptions::default()).unwrap();
+    assert!(!read("example.v1").is_part());
+    for (name, other) in [
+        ("a/curicoparte1.v1", "such as curicoparte2.v1,"),
+        ("CuricoParte2.V1", "such as CuricoParte1.V1,"),
+    ] {
+        let record = read(name);
+        assert!(record.is_part());
+        let warning = record.warnings.iter().find(|one| one.message.contains("longer record"));
+        let message = &warning.unwrap().message;
+        for words in [other, "of this part are used"] {
+            assert!(message.contains(words), "no {words:?} in {message}");
+        }
+    }
+}
+
+#[test]
 fn single_components_are_gathered() {
     let record = example((0.0, 90.0), 300);
     let single = |k: usize| {

@@ -3,11 +3,14 @@
 //! Each channel is a block of 13 text lines, 7 lines of integers (16I5), 7 lines of reals, and
 //! data.
 
+use std::path::Path;
+
 use super::even::{Timed, even_steps};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};
 use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
+use crate::join::PART;
 use crate::math::STANDARD_GRAVITY;
 use crate::record::{Channel, Record, Stage};
 use crate::site::{Site, position};
@@ -78,13 +81,30 @@ fn read_renadic(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadEr
     let mut record = read_blocks(source, hints, RENADIC.name, 0)?;
     // Times and coordinates in these headers are zero or defaults of the software.
     record.place(None, &Site::default());
-    if source.name.to_ascii_lowercase().contains("parte") {
+    if let Some(other) = other_part(source.name) {
+        let seconds = record.channels.first().map_or(0.0, Channel::duration);
         record.warn(
             None,
-            "the file name indicates one part of a longer record; join the overlapping parts",
+            format!(
+                "the file name indicates {PART}, and only the {seconds:.0} s of this part are used; to use the whole \
+                 record, join this file with the other parts, such as {other}, in order of time"
+            ),
         );
     }
     Ok(record)
+}
+
+/// Returns the name of another part of the record, such as "parte2.v1" for "parte1.v1"; `None` if the name of the file
+/// indicates no part.
+fn other_part(path: &str) -> Option<String> {
+    const WORD: &str = "parte";
+    let name = Path::new(path).file_name().map_or(path.into(), |name| name.to_string_lossy());
+    let digits = name.to_ascii_lowercase().rfind(WORD)? + WORD.len();
+    let (start, rest) = name.split_at(digits);
+    let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+    let (number, end) = rest.split_at(end);
+    let other = if number.parse() == Ok(1) { 2 } else { 1 };
+    Some(format!("{start}{other}{end}"))
 }
 
 /// Reads every block of a volume 1 file. Each line contains pairs of time and value after `indent`

@@ -518,7 +518,10 @@ InterfacesFields = TypedDict(
     },
     total=False,
 )
-"""Contact laws of a stack, by pair."""
+"""Contact laws of a stack, by pair. A stack stands on its seats: `rack-ground`, `barrel-rack` and, for racks on
+posts, `rack-rack`; state measured constants there. The other pairs touch only in impacts, most of them after a
+body has left its seat.
+"""
 
 
 class IsolatorFields(TypedDict, total=False):

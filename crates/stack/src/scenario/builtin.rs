@@ -33,3 +33,9 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 pub fn get(name: &str) -> Option<&'static str> {
     ALL.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
+
+/// Returns the titles of all built-in scenarios.
+pub(super) fn titles() -> impl Iterator<Item = &'static str> {
+    let title = |text: &'static str| text.lines().find_map(|line| line.strip_prefix("title = \""));
+    ALL.iter().filter_map(move |(_, text)| title(text)?.strip_suffix('"'))
+}

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::error::{Place, Problem, ScenarioError};
 use super::field::Section;
 use super::reader::{Reader, nearest};
+use super::title::Own;
 use super::tree::{Entry, Node, Origin, SourceFile, Sources, Table, Value};
 use super::{Scenario, Written, builtin, merge, renamed, root};
 use crate::system;
@@ -176,7 +177,8 @@ impl Scenario {
             tree.set(Entry { key: "schema".to_owned(), origin: Origin::Whole(0), node });
         }
         let table = extend(&mut sources, tree, 0, Access::Files, &SCENARIO)?;
-        finished(sources, table, Vec::new())
+        let own = own_title(&sources, &table);
+        finished(sources, table, Vec::new(), own)
     }
 
     /// Returns the scenario with further overrides as in [`Scenario::parse`]. They replace earlier overrides of the
@@ -197,14 +199,14 @@ impl Scenario {
     ///
     /// Returns the first problem found, with its place in the text.
     pub fn with(&self, overrides: &[String]) -> Result<Self, ScenarioError> {
-        let Some((sources, table)) = self.written.0.as_deref() else {
+        let Some((sources, table)) = self.written.source.as_deref() else {
             return Self::parse("scenario", &self.to_resolved_toml(), overrides);
         };
         let (mut sources, mut table) = (sources.clone(), table.clone());
         let first = sources.overrides.len();
         sources.overrides.extend_from_slice(overrides);
         merge::apply_overrides(&mut table, &root::ROOT, &sources, first)?;
-        finished(sources, table, self.written.1.clone())
+        finished(sources, table, self.written.warnings.clone(), self.written.own.clone())
     }
 
     /// Reads a built-in scenario.
@@ -266,8 +268,37 @@ fn read(
     overrides: &[String],
     access: Access,
 ) -> Result<Scenario, ScenarioError> {
-    let (sources, table) = merged(name, bytes, overrides, access, &SCENARIO)?;
-    finished(sources, table, Vec::new())
+    let (mut sources, mut table) = merged(name, bytes, &[], access, &SCENARIO)?;
+    let own = own_title(&sources, &table);
+    sources.overrides = overrides.to_vec();
+    merge::apply_overrides(&mut table, &root::ROOT, &sources, 0)?;
+    finished(sources, table, Vec::new(), own)
+}
+
+/// Returns the title that the user wrote, with the stack and the motion to which it applies: those of the given table,
+/// to which no override has been applied. Returns `None` if the file has no title, or the title of a built-in scenario.
+fn own_title(sources: &Sources, table: &Table) -> Option<Own> {
+    let node = &table.get("title")?.node;
+    let Value::Text(title) = &node.value else { return None };
+    if builtin::titles().any(|known| known == title) {
+        return None;
+    }
+    // A title in an extended file was written for the values of that file, which are not known here.
+    let here = matches!(node.origin, Origin::File { file: 0, .. } | Origin::Whole(0));
+    let stated = if here { resolved(sources, &mut table.clone()).ok() } else { None };
+    Own::of(title, stated.as_ref().map(|(scenario, _)| scenario))
+}
+
+/// Reads the scenario from a table, and returns it with warnings about former keys in the table, which are renewed.
+fn resolved(
+    sources: &Sources,
+    table: &mut Table,
+) -> Result<(Scenario, Vec<String>), ScenarioError> {
+    let warnings = renamed::renew(table, sources)?;
+    merge::expand_names(table, &root::ROOT);
+    let reader =
+        Reader::open(sources, &root::ROOT, String::new(), Some(&*table), Origin::Whole(0))?;
+    Ok((root::read(reader, &stem(&sources.files[0].name))?, warnings))
 }
 
 /// Parses the bytes of a file, overlays its table on the tables of the files that it extends, and applies the
@@ -290,31 +321,30 @@ pub(super) fn merged(
 
 /// Builds the scenario from a table to which all overrides have been applied.
 ///
-/// The warnings of the scenario are the given `warnings`, followed by those about former keys in the table.
+/// The warnings of the scenario are the given `warnings`, followed by those about former keys in the table. `own` is
+/// the title that the user wrote; if there is none, a generated title replaces an outdated one.
 pub(super) fn finished(
     sources: Sources,
     mut table: Table,
     mut warnings: Vec<String>,
+    own: Option<Own>,
 ) -> Result<Scenario, ScenarioError> {
-    warnings.extend(renamed::renew(&mut table, &sources)?);
-    merge::expand_names(&mut table, &root::ROOT);
-    let reader =
-        Reader::open(&sources, &root::ROOT, String::new(), Some(&table), Origin::Whole(0))?;
-    let mut scenario = root::read(reader, &stem(&sources.files[0].name))?;
+    let (mut scenario, renewed) = resolved(&sources, &mut table)?;
+    warnings.extend(renewed);
     // A title from an extended file, or from before an override, may be outdated.
     let parts = ["run.", "record.", "imperfections.", "unknowns."];
     let kept = |change: &String| parts.iter().any(|part| change.starts_with(part));
     let unchanged = sources.overrides.iter().all(kept);
     let written = table.get("title").map(|title| title.node.origin);
-    let own = match written {
-        Some(Origin::File { file, .. } | Origin::Whole(file)) => file == 0 && unchanged,
-        Some(Origin::Override(_)) => true,
-        Some(Origin::Default) | None => unchanged,
+    let (applies, own) = match written {
+        Some(Origin::File { file, .. } | Origin::Whole(file)) => (file == 0 && unchanged, own),
+        Some(Origin::Override(_)) => (true, Own::of(&scenario.title, Some(&scenario))),
+        Some(Origin::Default) | None => (unchanged, own),
     };
-    if !own {
+    scenario.written = Written { source: Some(Arc::new((sources, table))), warnings, own };
+    if !applies {
         scenario.retitle();
     }
-    scenario.written = Written(Some(Arc::new((sources, table))), warnings);
     Ok(scenario)
 }
 

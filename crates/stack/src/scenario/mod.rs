@@ -124,10 +124,16 @@ pub struct Scenario {
     written: Written,
 }
 
-/// The sources and the table from which a scenario was read, so that errors can state the place of a value, followed by
-/// warnings about the text of the scenario. Comparisons of scenarios ignore both.
+/// What is known about the text of a scenario. Comparisons of scenarios ignore it.
 #[derive(Clone, Default)]
-struct Written(Option<Arc<(tree::Sources, tree::Table)>>, Vec<String>);
+struct Written {
+    /// The sources and the table from which the scenario was read, so that errors can state the place of a value.
+    source: Option<Arc<(tree::Sources, tree::Table)>>,
+    /// Warnings about the text.
+    warnings: Vec<String>,
+    /// The title that the user wrote.
+    own: Option<title::Own>,
+}
 
 impl PartialEq for Written {
     fn eq(&self, _: &Self) -> bool {
@@ -163,7 +169,8 @@ pub enum Scene {
 }
 
 impl Scenario {
-    /// Replaces an outdated title by a title that is generated from the bodies and the motion.
+    /// Replaces an outdated title by a title that is generated from the bodies and the motion. A title that the user
+    /// wrote stays, followed by what is changed.
     pub(crate) fn retitle(&mut self) {
         self.title = title::of(self);
     }
@@ -190,7 +197,7 @@ impl Scenario {
     /// Overrides take precedence over the file itself, and the file over the files that it extends. Among fields of
     /// equal precedence, the first one in `fields` applies.
     pub fn place_of(&self, fields: &[String]) -> Option<Place> {
-        let (sources, table) = self.written.0.as_deref()?;
+        let (sources, table) = self.written.source.as_deref()?;
         let origin =
             |field: &String| merge::origin_at(table, &field.split('.').collect::<Vec<_>>());
         let rank = |origin: &tree::Origin| match origin {
@@ -205,7 +212,7 @@ impl Scenario {
 
     /// Returns warnings about the text of the scenario, for example about the use of a former key.
     pub fn warnings(&self) -> &[String] {
-        &self.written.1
+        &self.written.warnings
     }
 
     /// Returns the random differences from stack to stack; `None` for a free scene.
@@ -299,7 +306,7 @@ impl Scenario {
 
     /// Returns the node that was written at the path of a setting; `None` if no node was written there.
     fn node(&self, path: &str) -> Option<&tree::Node> {
-        let (_, table) = self.written.0.as_deref()?;
+        let (_, table) = self.written.source.as_deref()?;
         let keys: Vec<&str> = path.split('.').collect();
         merge::node_at(table, &keys)
     }

@@ -81,7 +81,9 @@ macro_rules! pairs {
         /// Definition of the table of the contact laws of a stack.
         pub static INTERFACES: Section = Section {
             name: "interfaces",
-            help: "Contact laws of a stack, by pair.",
+            help: "Contact laws of a stack, by pair. A stack stands on its seats: `rack-ground`, `barrel-rack` and, \
+                   for racks on posts, `rack-rack`; state measured constants there. The other pairs touch only in \
+                   impacts, most of them after a body has left its seat.",
             fields: &[$(Field::new(
                 $name,
                 Kind::Table(&$table),
@@ -108,27 +110,28 @@ macro_rules! pairs {
 }
 
 pairs! {
-    /// Bottom rack on the ground.
+    /// Seat: rack of the lowest level on the ground.
     RackGround rack_ground "rack-ground" = INTERFACE, HEAVY, 0.5,
         "benchmark of Candia, de la Llera and Almazán (2008); between the 0.4 used in design and the 0.57 to 0.65 \
          found in tests of steel on concrete";
-    /// Barrel in its cradle, and barrel under the rack above.
+    /// Seat: barrel in its cradle, and barrel under the rack above.
     BarrelRack barrel_rack "barrel-rack" = INTERFACE, HEAVY, 0.3,
         "between the 0.22 to which Candia, de la Llera and Almazán (2008) calibrated one test and the 0.37 to 0.45 \
          found for wood pallets on steel; wood on steel ranges from 0.1 to 0.6 with moisture and finish";
-    /// Rack that stands on the rack below.
+    /// Seat: rack that stands on the posts of the rack below. Racks that stand on barrels do not use it.
     RackRack rack_rack "rack-rack" = INTERFACE, HEAVY, 0.3, "steel on steel, assumption";
-    /// Barrel against barrel.
+    /// Impact: barrel against barrel.
     BarrelBarrel barrel_barrel "barrel-barrel" = IMPACT, HEAVY, 0.4, "wood on wood, assumption";
-    /// Barrel on the ground.
+    /// Impact: barrel that has fallen to the ground.
     BarrelGround barrel_ground "barrel-ground" = IMPACT, HEAVY, 0.4, "wood on concrete, assumption";
-    /// Barrel against a rack on which it has no seat, or against its own rack after leaving its seat.
+    /// Impact: barrel against a rack while it has no seat there, because it has left its seat or the rack is a
+    /// neighbor. State the friction here as well if you state that of `barrel-rack`; one does not follow the other.
     FallenBarrelRack fallen_barrel_rack "fallen-barrel-rack" = IMPACT, HEAVY, 0.3,
         "the same as for a barrel on a rack";
-    /// Rack of an upper level that has fallen to the ground.
+    /// Impact: rack of an upper level that has fallen to the ground. The lowest rack has the pair `rack-ground`.
     FallenRackGround fallen_rack_ground "fallen-rack-ground" = IMPACT, LIGHT, 0.5,
         "the same as for a rack on the ground";
-    /// Rack against a rack on which it does not stand.
+    /// Impact: rack against a rack on whose posts it does not stand.
     FallenRackRack fallen_rack_rack "fallen-rack-rack" = IMPACT, LIGHT, 0.3,
         "steel on steel, assumption";
 }

@@ -229,7 +229,7 @@ impl Host {
                 self.sources.error(node.origin, Problem::Inconsistent { message })
             })?;
         }
-        load::finished(self.sources.clone(), table, Vec::new())
+        load::finished(self.sources.clone(), table, Vec::new(), None)
     }
 }
 
@@ -297,7 +297,8 @@ impl Template {
             Origin::Whole(0),
         )?;
         let scenario = root::read(reader, &self.title)?;
-        Ok(Scenario { written: Written(None, self.warnings.clone()), ..scenario })
+        let written = Written { warnings: self.warnings.clone(), ..Written::default() };
+        Ok(Scenario { written, ..scenario })
     }
 
     /// Returns the value at a path in a scenario, including defaults; `None` if there is no value at this path.

@@ -12,13 +12,83 @@ const WORDS: [&str; 13] = [
     "twelve",
 ];
 
-/// Returns a title that describes the stack and its motion, such as "Six barrels on three levels, elCentro.AT2". For a
-/// free scene, returns the title of the scenario with ", changed" appended.
+/// End of the title of a scenario whose change the other words of the title do not show.
+const CHANGED: &str = ", changed";
+
+/// A title that the user wrote, with the words for the stack and for the motion to which it applies.
+#[derive(Clone)]
+pub(super) struct Own {
+    title: String,
+    /// Words for the stack and for the motion; `None` if they are unknown.
+    stated: Option<(String, String)>,
+}
+
+impl Own {
+    /// Returns a title that applies to the scenario `stated`; `None` if the title was generated from this scenario.
+    ///
+    /// If words about changes were appended to the title, as in the resolved text of a changed scenario, they are left
+    /// out.
+    pub(super) fn of(title: &str, stated: Option<&Scenario>) -> Option<Self> {
+        let mut title = title.strip_suffix(CHANGED).unwrap_or(title);
+        let Some((stated, Scene::Stack { stack, .. })) = stated.map(|one| (one, &one.scene)) else {
+            return Some(Self { title: title.to_owned(), stated: None });
+        };
+        let words = (stands(stack), shakes(stated, None));
+        if title
+            .strip_prefix(&words.0)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with(", "))
+        {
+            return None;
+        }
+        if let Some((own, _)) = title.split_once(&format!(": {}", lower(&words.0))) {
+            title = own;
+        } else if let Some(own) = title.strip_suffix(&format!(": {}", words.1)) {
+            title = own;
+        }
+        Some(Self { title: title.to_owned(), stated: Some(words) })
+    }
+
+    /// Returns the title, followed by the words that do not apply to the stated scenario and are not in the title.
+    fn with(&self, stands: &str, shakes: &str) -> String {
+        let known = |of: fn(&(String, String)) -> &String| self.stated.as_ref().map(of);
+        let mut changed = Vec::new();
+        if known(|words| &words.0).is_none_or(|stated| stated != stands) {
+            changed.push(lower(stands));
+        }
+        if known(|words| &words.1).is_none_or(|stated| stated != shakes) {
+            changed.push(shakes.to_owned());
+        }
+        if changed.is_empty() {
+            return self.title.clone() + CHANGED;
+        }
+        let title = self.title.to_lowercase();
+        changed.retain(|words| !title.contains(&words.to_lowercase()));
+        if changed.is_empty() {
+            return self.title.clone();
+        }
+        format!("{}: {}", self.title, changed.join(", "))
+    }
+}
+
+fn lower(words: &str) -> String {
+    let mut lower = words.to_owned();
+    lower[..1].make_ascii_lowercase();
+    lower
+}
+
+/// Returns a title that describes the stack and its motion, such as "Six barrels on three levels, elCentro.AT2". If the
+/// user wrote a title, what is changed follows it, as in "My stack: elCentro.AT2". For a free scene, returns the title
+/// of the scenario with ", changed" appended.
 pub(super) fn of(scenario: &Scenario) -> String {
     let Scene::Stack { stack, .. } = &scenario.scene else {
-        return format!("{}, changed", scenario.title);
+        return scenario.title.strip_suffix(CHANGED).unwrap_or(&scenario.title).to_owned()
+            + CHANGED;
     };
-    format!("{}, {}", stands(stack), shakes(scenario, None))
+    let (stands, shakes) = (stands(stack), shakes(scenario, None));
+    match &scenario.written.own {
+        Some(own) => own.with(&stands, &shakes),
+        None => format!("{stands}, {shakes}"),
+    }
 }
 
 impl Scenario {
@@ -30,7 +100,8 @@ impl Scenario {
     pub fn with_event(&self) -> Result<Self, GroundError> {
         let mut named = self.clone();
         let Scene::Stack { stack, .. } = &self.scene else { return Ok(named) };
-        if self.title == of(self)
+        if self.written.own.is_none()
+            && self.title == of(self)
             && let Some(event) = ground::event(&self.motion)?
         {
             named.title = format!("{}, {}", stands(stack), shakes(self, Some(&event)));

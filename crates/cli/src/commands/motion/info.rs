@@ -6,7 +6,8 @@ use std::process::ExitCode;
 
 use anyhow::bail;
 use barrelstack_motion::{
-    Channel, Corners, FORMATS, NoiseCriterion, Orientation, PulseFit, Record, Stage, StatedPeak,
+    Channel, Corners, FORMATS, NoiseCriterion, Orientation, Processing, PulseFit, Record, Stage,
+    StatedPeak,
 };
 use barrelstack_report::described;
 
@@ -109,10 +110,17 @@ pub(super) fn warn(record: &Record) {
     for warning in &record.warnings {
         printer::warning(&format!("{}: {warning}", record.file));
     }
+    if record.is_part() {
+        printer::warning(&format!(
+            "{}: `barrelstack motion convert FIRST SECOND --join -o whole.txt` joins the parts; give whole.txt to \
+             `run` with --record",
+            record.file
+        ));
+    }
     if record.stage == Stage::Raw {
         printer::warning(&format!(
-            "{}: this is a raw record; its PGV and PGD are dominated by drift until it is processed (barrelstack motion \
-             process)",
+            "{}: this is a raw record; its PGV and PGD are dominated by drift until it is processed: `run` processes \
+             it, and `barrelstack motion process` writes the processed record",
             record.file
         ));
     }
@@ -173,6 +181,8 @@ fn block(record: &Record, shown: &[Shown], all: bool) -> anyhow::Result<Vec<Stri
         lines.extend(measures::pulses(record).into_iter().map(|line| format!("  {line}")));
     }
     if record.stage == Stage::Raw {
+        lines.extend([String::new(), "  processing in a run".to_owned()]);
+        lines.extend(in_a_run().into_iter().map(|line| format!("    {line}")));
         lines.extend([
             String::new(),
             "  corners suggested by the noise before the shaking".to_owned(),
@@ -185,6 +195,27 @@ fn block(record: &Record, shown: &[Shown], all: bool) -> anyhow::Result<Vec<Stri
         lines.extend(record.notes.iter().map(|note| format!("    {}", step(note))));
     }
     Ok(lines)
+}
+
+/// Describes the processing of a raw record in a run, and how to change it.
+fn in_a_run() -> [String; 3] {
+    let chain = Processing::compact();
+    let corner = |corner: Option<f64>, name: &str| match corner {
+        Some(frequency) => format!("a {name} corner at {frequency} Hz"),
+        None => format!("no {name} corner"),
+    };
+    [
+        format!(
+            "`run` removes the mean before the shaking, filters with {} and {}, and corrects the baseline so that \
+             velocity and displacement end at zero",
+            corner(chain.high_pass, "high-pass"),
+            corner(chain.low_pass, "low-pass"),
+        ),
+        "other corners: `barrelstack motion process FILE --corners auto -o processed.txt`, or --high-pass and \
+         --low-pass; then `run --record processed.txt`"
+            .to_owned(),
+        "no processing: `run --set motion.processing=none`".to_owned(),
+    ]
 }
 
 fn stage(stage: Stage) -> &'static str {
