@@ -131,6 +131,8 @@ pub struct Fates {
     upward: Vec<Vec3>,
     /// For every body, its rotation in the current state.
     turned: Vec<Rotation3>,
+    /// For every rack, the least cosine of its tilt so far.
+    least_upright: Vec<f64>,
     all: Vec<Fate>,
     /// Time (s) of the first loss of seat, and the body that lost its seat; `None` if no body has lost its seat.
     collapse: Option<(f64, BodyId)>,
@@ -149,6 +151,7 @@ impl Fates {
             thresholds,
             upward: upright.iter().map(|turned| turned.unapply(UP)).collect(),
             turned: upright.clone(),
+            least_upright: vec![1.0; upright.len()],
             upright,
             all: state.poses.iter().map(fate).collect(),
             collapse: None,
@@ -222,9 +225,14 @@ impl Fates {
             }
             self.slips(poses, i, &mut slips);
             let mean = mean(&slips);
-            // A barrel may roll about its axis without limit.
-            let up = if kind == PartKind::Rack { self.up(i).z } else { 1.0 };
-            let tilt = if up < 1.0 { math::acos(up.max(-1.0)) } else { 0.0 };
+            // A barrel may roll about its axis without limit. Angles smaller than the largest so far are not needed.
+            let upright = if kind == PartKind::Rack { self.up(i).z } else { 1.0 };
+            let tilt = if upright < self.least_upright[i] {
+                self.least_upright[i] = upright;
+                math::acos(upright.max(-1.0))
+            } else {
+                0.0
+            };
             let (displacement, slip) = (level(moved).length(), level(mean).length());
             let fate = &mut self.all[i];
             fate.whole_run.raise(displacement, slip, tilt);

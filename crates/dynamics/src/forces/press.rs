@@ -45,10 +45,10 @@ pub(super) fn touch<S: Space>(
     let pair = model.pair(group.pair);
     scratch.contact_evaluations += (group.end - group.first) as u64;
     let interface = &model.interfaces[pair.interface];
-    match (interface.normal, interface.friction) {
+    match (&interface.normal, &interface.friction) {
         (
-            NormalLaw::SpeedGap { stiffness, damping },
-            FrictionLaw::Coulomb {
+            &NormalLaw::SpeedGap { stiffness, damping },
+            &FrictionLaw::Coulomb {
                 static_coefficient,
                 kinetic_coefficient,
                 tangential_stiffness,
@@ -74,10 +74,11 @@ pub(super) fn touch<S: Space>(
                 scratch,
             );
         }
-        (normal, friction) => touch_by(
+        // The laws are read where they are needed; a copy for every pair would take longer.
+        _ => touch_by(
             &pair,
             #[inline(always)]
-            || Laws { normal, friction },
+            || Laws { normal: interface.normal, friction: interface.friction },
             model,
             state,
             step,

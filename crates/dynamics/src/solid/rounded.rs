@@ -203,6 +203,7 @@ fn meeting<R: Real>(
     let mut shares = Shares { deepest: one, others: R::zero(), aside: R::zero() };
     let mut changes = Slopes::default();
     let (mut solved, mut left) = (R::Mask::default(), near);
+    let mut bears = false;
     if let Some(tube) = tube_on_barrel(hull, surface, origin, frame) {
         (gap, point, solved) = (tube.gap, tube.point, tube.found & near);
         gap.distance = R::select(near, gap.distance, one);
@@ -224,6 +225,7 @@ fn meeting<R: Real>(
         }
         let normal = gap.normal.lane(lane);
         if let Some(flat) = shared(&contactor, &target, at, turned, normal) {
+            bears = true;
             put_gap(&mut middle_gap, lane, flat.gap);
             put(&mut middle, lane, flat.point);
             shares.deepest = shares.deepest.with_lane(lane, flat.shares.deepest);
@@ -238,6 +240,9 @@ fn meeting<R: Real>(
             put_wrench(&mut changes.deepest, lane, own.deepest);
             put_wrench(&mut changes.others, lane, own.others);
         }
+    }
+    if !bears {
+        return Patch { first: 0, deepest: midway(point, gap), spread: None };
     }
     let axes = match (hull, surface) {
         (Hull::Capsule(_), _) | (_, Solid::Ball(_) | Solid::Capsule(_)) => Axes::Line([axes[0]]),

@@ -12,10 +12,27 @@ use crate::state::State;
 /// Relative kinematics of the two bodies of a contact pair, in the frame of the target's surface.
 #[derive(Clone, Debug)]
 pub(crate) struct PairKinematics<S: Space> {
-    /// The contactor, the target, and the index of the target's surface.
-    of: [usize; 3],
+    of: Between,
     pub(super) frame: PairFrame<S>,
     motion: Motion<S>,
+}
+
+/// The bodies of a contact pair.
+///
+/// A struct, since its fields are compared one by one. The comparison of an array would wait until all stores before it
+/// have reached the cache, which takes as long as hundreds of operations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Between {
+    contactor: usize,
+    target: usize,
+    /// Index of the target's surface.
+    surface: usize,
+}
+
+impl Between {
+    fn of(pair: &ContactPair) -> Self {
+        Self { contactor: pair.contactor, target: pair.target, surface: pair.surface }
+    }
 }
 
 /// Relative motion of two bodies.
@@ -45,7 +62,7 @@ impl<S: Space> PairKinematics<S> {
             spin: S::unrotate_spin(frame.rotation, contactor.angular) - target_spin,
             target_spin,
         };
-        Self { of: [pair.contactor, pair.target, pair.surface], frame, motion }
+        Self { of: Between::of(pair), frame, motion }
     }
 
     /// Returns the kinematics of a pair; reuses the kinematics of the previous pair if that pair has the same bodies
@@ -58,7 +75,7 @@ impl<S: Space> PairKinematics<S> {
         state: &State<S>,
         rotations: &[S::Rotation],
     ) -> &'a Self {
-        let of = [pair.contactor, pair.target, pair.surface];
+        let of = Between::of(pair);
         if last.as_ref().is_some_and(|known| known.of != of) {
             *last = None;
         }
