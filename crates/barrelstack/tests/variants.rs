@@ -81,7 +81,7 @@ fn falls_are_counted_as_long_as_every_variant_is_followed_after_its_first_loss()
 fn the_first_verdict_is_that_of_the_first_eight_variants_whatever_ends_first() {
     let mut scenario = two_levels(&["motion.scale.factor=0.7"]);
     if let Scene::Stack { imperfections, .. } = &mut scenario.scene {
-        imperfections.variants = 20;
+        imperfections.variants = 16;
     }
     let (mut first, mut done) = (Vec::new(), Vec::new());
     let all = answer(&scenario, RunChoice::Typical, &mut |now| {
@@ -97,7 +97,7 @@ fn the_first_verdict_is_that_of_the_first_eight_variants_whatever_ends_first() {
     let eight = Spread::of(plane, &results[..9]).unwrap();
     assert_eq!((eight.variants, first.len()), (8, 1));
     assert_eq!(first[0], (8, words::headline(&[(View::Transverse, &eight)])));
-    assert_eq!(done.iter().max(), Some(&(21, 21)));
+    assert_eq!(done.iter().max(), Some(&(17, 17)));
     // With eight variants there is nothing left to wait for.
     let scenario = two_levels(&[]);
     let mut early = 0;

@@ -490,7 +490,7 @@ impl Cellar {
     fn of(host: &Host) -> Result<Self, ScenarioError> {
         let reader = host.reader(&CELLAR)?;
         reader.integer("schema")?;
-        let title = reader.optional_text("title")?.unwrap_or_else(|| host.stem());
+        let title = host.titled(&reader.optional_text("title")?.unwrap_or_else(|| host.stem()));
         if reader.optional_text("extends")?.is_some() {
             let message = "`extends` cannot be overridden; write it in the file".to_owned();
             return Err(reader.inconsistent("extends", message));

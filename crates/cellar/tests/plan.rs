@@ -30,6 +30,24 @@ fn built_in_cellars_have_the_barrels_of_their_titles() {
     assert_eq!(names_built_in().count(), 3);
 }
 
+/// A title describes the room of its file, so a change that it does not name follows it.
+#[test]
+fn the_title_of_a_changed_cellar_says_so() {
+    let title = |changes: &[&str]| changed(changes).unwrap().title;
+    let own = "A small cellar, South Napa 2014";
+    assert_eq!(title(&[]), own);
+    assert_eq!(title(&["run.duration=5 s", "imperfections.variants=2"]), own);
+    assert_eq!(title(&["stack.levels=2"]), format!("{own}, changed"));
+    assert_eq!(title(&["stack.levels=2", "title=\"Mine\""]), "Mine");
+    // Once is enough, and the words stay in the resolved text.
+    let again = |cellar: &Cellar, changes: &[String]| {
+        Cellar::parse("again.toml", cellar.to_resolved_toml().as_bytes(), changes).unwrap()
+    };
+    let changed = changed(&["stack.levels=2"]).unwrap();
+    assert_eq!(again(&changed, &[]).title, format!("{own}, changed"));
+    assert_eq!(again(&changed, &["stack.levels=3".to_owned()]).title, format!("{own}, changed"));
+}
+
 #[test]
 fn a_cellar_reads_back_from_its_resolved_text() {
     let cellar = changed(&["block.1.levels_by_row=[4, 5]", "block.1.azimuth=90 deg"]).unwrap();

@@ -12,9 +12,10 @@ use barrelstack::ground::GroundError;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
 use barrelstack::summary::Unfinished;
+use barrelstack::variants::words::headline_in_space;
 use barrelstack::variants::{
-    Advance, AsItIs, Judged, Observer, Plane, Remedy, RunChoice, RunCounter, Spread, Trial, planes,
-    remedy_by, verdict,
+    self, Advance, AsItIs, Judged, Observer, Plane, Remedy, RunChoice, RunCounter, Spread, Trial,
+    planes, remedy_by, verdict,
 };
 use barrelstack::watch::Ending;
 use barrelstack::{RunFailure, Scenario, pool};
@@ -189,11 +190,48 @@ pub fn run_all(
     observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Case>, RunFailure> {
     let plane = plane(scenario)?;
-    // Fail early: validate motion, stack and memory before running variants.
-    let ground = Ground::of(&plane.scenario)?;
-    affordable(&plane.scenario, &Stack::of(&plane.scenario)?, &ground)?;
+    let ground = checked(&plane)?;
     let numbers = plane.numbers();
     Ok(run_some(&plane, &ground, &numbers, &|done| observer(done, numbers.len())))
+}
+
+/// Returns the ground motion, after checking that the motion can be read, that the stack can be built, and that memory
+/// suffices, so that errors are found before variants are run.
+fn checked(plane: &Plane) -> Result<Ground, RunFailure> {
+    let ground = Ground::of(&plane.scenario)?;
+    affordable(&plane.scenario, &Stack::of(&plane.scenario)?, &ground)?;
+    Ok(ground)
+}
+
+/// Returns the same results as [`run_all`]. The variants of the first verdict are run first, and their verdict is
+/// reported, as for plane models.
+fn in_order(
+    plane: &Plane,
+    report: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
+) -> Result<Vec<Case>, RunFailure> {
+    let ground = checked(plane)?;
+    let numbers = plane.numbers();
+    let of = numbers.len();
+    let (first, others) = numbers.split_at(of.min(variants::FIRST as usize + 1));
+    let run = |numbers: &[u32], before: usize| {
+        run_some(plane, &ground, numbers, &|done| {
+            report(Advance::Variants { done: before + done, of })
+        })
+    };
+    let mut cases = run(first, 0);
+    if others.is_empty() {
+        return Ok(cases);
+    }
+    let results: Vec<CaseResult> = cases.iter().map(|case| case.result.clone()).collect();
+    let finished = results.iter().all(|one| one.outcome != Ok(Outcome::Interrupted));
+    let enough = finished && others.len() >= variants::FIRST as usize;
+    if let Some(spread) = enough.then(|| Spread::of(plane, &results)).flatten() {
+        let headline = headline_in_space(&spread);
+        // A request to stop is handled by the next variant.
+        let _ = report(Advance::First { variants: variants::FIRST, headline });
+    }
+    cases.extend(run(others, first.len()));
+    Ok(cases)
 }
 
 /// Runs the variants with the given numbers on all cores. The observer receives the number of finished variants, and
@@ -388,9 +426,7 @@ pub(crate) fn answered(
     let varied = !matches!(choice, RunChoice::Alone(_)) && plane.count() > 0;
     let cases = match known {
         Some(cases) if varied => cases,
-        _ if varied => {
-            run_all(&plane.scenario, &|done, of| report(Advance::Variants { done, of }))?
-        }
+        _ if varied => in_order(&plane, &report)?,
         _ => Vec::new(),
     };
     let results: Vec<CaseResult> = cases.iter().map(|case| case.result.clone()).collect();

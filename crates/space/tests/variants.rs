@@ -6,8 +6,10 @@ use std::ops::ControlFlow;
 
 use barrelstack::Scenario;
 use barrelstack::assemble::PartKind;
+use barrelstack::ensemble::CaseResult;
 use barrelstack::scenario::View;
-use barrelstack::variants::{RunChoice, planes};
+use barrelstack::variants::words::headline_in_space;
+use barrelstack::variants::{Advance, RunChoice, Spread, planes};
 use barrelstack_dynamics::Vec3;
 use barrelstack_space::run::{run, stand};
 use barrelstack_space::variants::remedy;
@@ -106,6 +108,27 @@ fn an_answer_counts_variants_and_directions() {
     let [across, along] = answer.summary.directions.as_ref().unwrap().first();
     assert_eq!(across + along, spread.collapsed - spread.cannot_stand);
     assert!(told > 4);
+}
+
+#[test]
+fn the_first_verdict_is_that_of_the_first_eight_variants() {
+    let scenario = demo(&["stack.levels=2", "imperfections.variants=16", "run.duration=1 s"]);
+    let (mut first, mut done) = (Vec::new(), Vec::new());
+    let all = answer(&scenario, RunChoice::Typical, &mut |now| {
+        match now {
+            Advance::First { variants, headline } => first.push((variants, headline)),
+            Advance::Variants { done: so_far, of } => done.push((so_far, of)),
+            Advance::Run(_) => {}
+        }
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    let plane = &planes(&scenario).unwrap()[0];
+    let results: Vec<CaseResult> = all.cases.iter().map(|case| case.result.clone()).collect();
+    assert_eq!(results.len(), 17);
+    let eight = Spread::of(plane, &results[..9]).unwrap();
+    assert_eq!(first, [(8, headline_in_space(&eight))]);
+    assert_eq!(done.iter().max(), Some(&(17, 17)));
 }
 
 #[test]

@@ -240,8 +240,8 @@ fn answered(
     Ok(Answer { scenario: scenario.clone(), decides, other })
 }
 
-/// Number of variants after which a first verdict is reported.
-const FIRST: u32 = 8;
+/// Number of variants after which a first verdict is reported, if at least as many variants follow.
+pub const FIRST: u32 = 8;
 
 /// Runs the variants of the first verdict, reports that verdict, and then runs all other variants.
 ///
@@ -263,7 +263,7 @@ fn in_order(
         return Ok(results);
     }
     let open = |one: &CaseResult| one.outcome == Ok(Outcome::Interrupted);
-    if others.len() > first.len() && !results.iter().flatten().any(open) {
+    if others.len() >= FIRST as usize && !results.iter().flatten().any(open) {
         let spreads = planes.iter().zip(&results);
         let spreads: Vec<(View, Spread)> = spreads
             .filter_map(|(plane, results)| Some((plane.view()?, Spread::of(plane, results)?)))

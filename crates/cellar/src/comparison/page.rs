@@ -2,6 +2,7 @@
 
 use barrelstack::compare::inputs;
 use barrelstack::report::WORDS;
+use barrelstack::scenario::title::without_changed;
 use barrelstack::variants::FEW;
 use barrelstack::variants::words::percent;
 use barrelstack_report::{
@@ -240,11 +241,12 @@ pub fn document(layouts: &[Layout], found: &CellarComparison) -> Document {
     }
 }
 
-/// Returns the names of the layouts, followed by the title if all cellars have the same title.
+/// Returns the names of the layouts, followed by the title of the cellar if all layouts are changes of the same cellar.
 fn title(layouts: &[Layout]) -> String {
     let names = format!("Comparison of {}", listed(layouts.iter().map(|one| one.name.clone())));
-    let first = layouts.first().map(|one| &one.cellar.title);
-    match first.filter(|first| layouts.iter().all(|one| one.cellar.title == **first)) {
+    let title = |one: &Layout| without_changed(&one.cellar.title).to_owned();
+    let first = layouts.first().map(title);
+    match first.filter(|first| layouts.iter().all(|one| title(one) == *first)) {
         Some(title) => format!("{names}: {title}"),
         None => names,
     }

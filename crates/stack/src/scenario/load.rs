@@ -331,21 +331,29 @@ pub(super) fn finished(
 ) -> Result<Scenario, ScenarioError> {
     let (mut scenario, renewed) = resolved(&sources, &mut table)?;
     warnings.extend(renewed);
-    // A title from an extended file, or from before an override, may be outdated.
-    let parts = ["run.", "record.", "imperfections.", "unknowns."];
-    let kept = |change: &String| parts.iter().any(|part| change.starts_with(part));
-    let unchanged = sources.overrides.iter().all(kept);
-    let written = table.get("title").map(|title| title.node.origin);
-    let (applies, own) = match written {
-        Some(Origin::File { file, .. } | Origin::Whole(file)) => (file == 0 && unchanged, own),
-        Some(Origin::Override(_)) => (true, Own::of(&scenario.title, Some(&scenario))),
-        Some(Origin::Default) | None => (unchanged, own),
+    let applies = title_applies(&sources, &table);
+    let own = match table.get("title").map(|title| title.node.origin) {
+        Some(Origin::Override(_)) => Own::of(&scenario.title, Some(&scenario)),
+        _ => own,
     };
     scenario.written = Written { source: Some(Arc::new((sources, table))), warnings, own };
     if !applies {
         scenario.retitle();
     }
     Ok(scenario)
+}
+
+/// Returns `true` if the title, or the name of the file where there is no title, describes what the table contains. A
+/// title from an extended file, or from before an override, may be outdated.
+pub(super) fn title_applies(sources: &Sources, table: &Table) -> bool {
+    let parts = ["run.", "record.", "imperfections.", "unknowns."];
+    let kept = |change: &String| parts.iter().any(|part| change.starts_with(part));
+    let unchanged = sources.overrides.iter().all(kept);
+    match table.get("title").map(|title| title.node.origin) {
+        Some(Origin::File { file, .. } | Origin::Whole(file)) => file == 0 && unchanged,
+        Some(Origin::Override(_)) => true,
+        Some(Origin::Default) | None => unchanged,
+    }
 }
 
 pub(super) fn stem(name: &str) -> String {

@@ -6,6 +6,7 @@ use super::error::{Place, Problem, ScenarioError};
 use super::field::{Field, Section};
 use super::load::{self, Access};
 use super::reader::Reader;
+use super::title::{CHANGED, without_changed};
 use super::tree::{Entry, Node, Origin, Sources, Table, Value};
 use super::{MotionSpec, Scenario, Written, merge, renamed, root};
 
@@ -56,6 +57,16 @@ impl Opened {
         load::add_source(&mut sources, name, bytes, folder)?;
         let table = sources.parse(0)?;
         Ok(Self { sources, table, access })
+    }
+
+    /// Returns a title that was read from the file; if overrides changed what it describes, or if it belongs to an
+    /// extended file, ", changed" is appended.
+    pub fn titled(&self, title: &str) -> String {
+        if load::title_applies(&self.sources, &self.table) {
+            title.to_owned()
+        } else {
+            without_changed(title).to_owned() + CHANGED
+        }
     }
 
     /// Returns the name of the file without its extension.
@@ -180,6 +191,16 @@ impl Host {
     /// If the file has a key that `section` does not have.
     pub fn reader(&self, section: &'static Section) -> Result<Reader<'_>, ScenarioError> {
         Reader::open(&self.sources, section, String::new(), Some(&self.table), Origin::Whole(0))
+    }
+
+    /// Returns a title that was read from the file; if overrides changed what it describes, or if it belongs to an
+    /// extended file, ", changed" is appended.
+    pub fn titled(&self, title: &str) -> String {
+        if load::title_applies(&self.sources, &self.table) {
+            title.to_owned()
+        } else {
+            without_changed(title).to_owned() + CHANGED
+        }
     }
 
     /// Returns the name of the file without its extension.

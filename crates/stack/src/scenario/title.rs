@@ -13,7 +13,12 @@ const WORDS: [&str; 13] = [
 ];
 
 /// End of the title of a scenario whose change the other words of the title do not show.
-const CHANGED: &str = ", changed";
+pub(super) const CHANGED: &str = ", changed";
+
+/// Returns a title without the words that state that something was changed.
+pub fn without_changed(title: &str) -> &str {
+    title.strip_suffix(CHANGED).unwrap_or(title)
+}
 
 /// A title that the user wrote, with the words for the stack and for the motion to which it applies.
 #[derive(Clone)]
@@ -29,7 +34,7 @@ impl Own {
     /// If words about changes were appended to the title, as in the resolved text of a changed scenario, they are left
     /// out.
     pub(super) fn of(title: &str, stated: Option<&Scenario>) -> Option<Self> {
-        let mut title = title.strip_suffix(CHANGED).unwrap_or(title);
+        let mut title = without_changed(title);
         let Some((stated, Scene::Stack { stack, .. })) = stated.map(|one| (one, &one.scene)) else {
             return Some(Self { title: title.to_owned(), stated: None });
         };
@@ -81,8 +86,7 @@ fn lower(words: &str) -> String {
 /// of the scenario with ", changed" appended.
 pub(super) fn of(scenario: &Scenario) -> String {
     let Scene::Stack { stack, .. } = &scenario.scene else {
-        return scenario.title.strip_suffix(CHANGED).unwrap_or(&scenario.title).to_owned()
-            + CHANGED;
+        return without_changed(&scenario.title).to_owned() + CHANGED;
     };
     let (stands, shakes) = (stands(stack), shakes(scenario, None));
     match &scenario.written.own {
