@@ -42,7 +42,7 @@ pub(crate) fn path() -> Result<PathBuf, Failure> {
     Ok(target.join("release").join("barrelstack").with_extension(std::env::consts::EXE_EXTENSION))
 }
 
-/// Runs the demo `repeats` times without a page and with one; returns the smallest times.
+/// Runs the demo `repeats` times without writing a page and as often with a page; returns the shortest times.
 pub(crate) fn demo(program: &Path, repeats: usize) -> Result<Demo, Failure> {
     let folder = std::env::temp_dir().join(format!("barrelstack-bench-{}", std::process::id()));
     let out = folder.to_string_lossy().into_owned();

@@ -81,8 +81,7 @@ impl Paired {
         self.both + self.only_first + self.only_second + self.neither
     }
 
-    /// Returns the number of paired variants that collapse in the first run, and that of those that collapse in the
-    /// second run.
+    /// Returns how many of the paired variants collapse in the first run, and how many collapse in the second run.
     pub fn collapsed(&self) -> [u32; 2] {
         [self.both + self.only_first, self.both + self.only_second]
     }

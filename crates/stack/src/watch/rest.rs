@@ -40,7 +40,7 @@ pub enum Ending {
     /// All bodies had come to rest on ground that was still. After a collapse, or if only the verdict is requested,
     /// calm ground is sufficient.
     Rest,
-    /// The run had continued after a collapse for the time that the scenario specifies.
+    /// The time for which the run continues after a collapse, which the scenario specifies, is over.
     AfterCollapse,
     /// The duration that the scenario specifies was reached.
     Duration,
