@@ -47,7 +47,7 @@ fn what_is_said_to_suffice_is_what_its_command_makes_and_stands_in_as_many_varia
         for one in found.height.iter().chain(&found.straps) {
             let (failed, run) = alone(base, one);
             assert_eq!((failed, run), (one.failed, one.variants), "{one:?}");
-            assert!(one.suffices && run == 8 && failed == 0, "{one:?}");
+            assert!(one.is_enough() && run == 8 && failed == 0, "{one:?}");
             // For two levels and five pretensions, in one plane, at 1 − 0.05/7: 1 − (0.025/7)^(1/8).
             assert_eq!((one.share, found.candidates), (Some(0.0), 7));
             let [low, high] = one.interval.unwrap();
@@ -56,17 +56,17 @@ fn what_is_said_to_suffice_is_what_its_command_makes_and_stands_in_as_many_varia
         }
         // A rejected change has counts of the variants that were run and no share.
         for one in found.tried.iter().filter(|one| one.variants < 8) {
-            assert!(!one.suffices && one.share.is_none() && one.interval.is_none(), "{one:?}");
+            assert!(!one.is_enough() && one.share.is_none() && one.interval.is_none(), "{one:?}");
         }
         // Insufficient changes with all variants failed more often than admissible.
-        for one in found.tried.iter().filter(|one| !one.suffices && one.variants == 8) {
+        for one in found.tried.iter().filter(|one| one.is_rejected() && one.variants == 8) {
             assert_eq!(alone(base, one), (one.failed, 8), "{one:?}");
         }
         // The smallest change: the next level up was tried, and fails.
         if let Some(height) = &found.height {
             let above =
                 found.tried.iter().filter(|one| one.kind == "height" && one.levels > height.levels);
-            assert!(above.clone().all(|one| !one.suffices));
+            assert!(above.clone().all(Tried::is_rejected));
             assert_eq!(above.count(), 2 - height.levels as usize);
         }
     }
@@ -87,7 +87,7 @@ fn a_change_has_the_range_of_the_changed_stack_and_its_order_in_draws() {
         assert!(spread.range.is_some());
         assert_eq!(one.range, spread.range, "{one:?}");
         let better = one.better_than_as_it_is.unwrap();
-        assert!((0.0..=1.0).contains(&better) && (!one.suffices || better > 0.6), "{one:?}");
+        assert!((0.0..=1.0).contains(&better) && (!one.is_enough() || better > 0.6), "{one:?}");
     }
     for one in found.tried.iter().filter(|one| one.share.is_none()) {
         assert_eq!((one.range, one.better_than_as_it_is), (None, None), "{one:?}");
@@ -134,7 +134,7 @@ fn sentences_say_what_suffices_and_what_does_not() {
         levels,
         pretension,
         changes: Vec::new(),
-        suffices: failed < 4,
+        suffices: Some(failed < 4),
         variants: 64,
         failed,
         share: Some(f64::from(failed) / 64.0),
@@ -212,7 +212,7 @@ fn sentences_say_which_levels_were_tried_and_not_enough() {
         levels,
         pretension,
         changes: Vec::new(),
-        suffices,
+        suffices: Some(suffices),
         variants: 16,
         failed: if suffices { 0 } else { 8 },
         share: None,
@@ -228,7 +228,7 @@ fn sentences_say_which_levels_were_tried_and_not_enough() {
             .iter()
             .map(|(pretension, suffices)| tried("straps", 5, Some(*pretension), *suffices));
         let all: Vec<Tried> = levels.chain(straps).collect();
-        let first = |kind| all.iter().find(|one| one.kind == kind && one.suffices).cloned();
+        let first = |kind| all.iter().find(|one| one.kind == kind && one.is_enough()).cloned();
         let (height, straps) = (first("height"), first("straps"));
         Remedy { height, straps, tried: all, complete, ..Remedy::default() }.sentence()
     };
@@ -322,7 +322,7 @@ fn sentences_say_what_the_uncertain_constants_leave_open() {
         levels,
         pretension,
         changes: Vec::new(),
-        suffices: true,
+        suffices: Some(true),
         variants: 64,
         failed: 0,
         share: Some(0.0),

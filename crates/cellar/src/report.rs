@@ -230,8 +230,8 @@ fn aisles(summary: &CellarSummary) -> Table {
         format!(
             "Times are counted from the start of the shaking. Ranges span the 5th to the 95th percentile of the \
              variants in which the event happens, or all of these variants if there are fewer than {FEW}; shares of \
-             variants are given with their 95 % intervals. A barrel is in the aisle when its center is above it. Area \
-             counts as covered if any body is above it, at any height; an aisle is blocked if no path 0.6 m wide \
+             variants are given with their 95 % intervals. A barrel lies in the aisle if its center \
+             is above the floor of the aisle. Area counts as covered if any body is above it, at any height; an aisle is blocked if no path 0.6 m wide \
              leads through it."
         ),
         &summary.aisles,

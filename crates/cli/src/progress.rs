@@ -114,16 +114,25 @@ impl Progress {
     /// Reports the number of attempts in a search of unknown length. `one` and `things` are the words for one attempt
     /// and for several attempts.
     pub(crate) fn searched(&self, done: u64, one: &str, things: &str) -> ControlFlow<()> {
-        self.told(done, things, || format!("{done} {}", if done == 1 { one } else { things }))
+        self.report_open_ended(done, things, || {
+            format!("{done} {}", if done == 1 { one } else { things })
+        })
     }
 
     /// Reports the progress of a search for changes that keep a stack up.
     pub(crate) fn tried(&self, attempt: variants::Attempt<'_>) -> ControlFlow<()> {
-        self.told(attempt.done as u64, "runs of changed stacks", || attempt.to_string())
+        self.report_open_ended(attempt.done as u64, "runs of changed stacks", || {
+            attempt.to_string()
+        })
     }
 
     /// Shows the text that `words` returns, of work whose length is unknown; `done` of `things` are finished.
-    fn told(&self, done: u64, things: &str, words: impl Fn() -> String) -> ControlFlow<()> {
+    fn report_open_ended(
+        &self,
+        done: u64,
+        things: &str,
+        words: impl Fn() -> String,
+    ) -> ControlFlow<()> {
         if let Some(bar) = &self.bar.0 {
             bar.set_message(words());
         }

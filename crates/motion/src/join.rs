@@ -229,7 +229,7 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
         let misfit = misfit(tail, head);
         if !(misfit <= LARGEST_MISFIT) {
             return Err(refuse(format!(
-                "channel {name}: in the overlap, {} differs by {:.0} % from the part before",
+                "channel {name}: in the overlap, {} differs by {:.0} % from the preceding part",
                 part.file,
                 100.0 * misfit
             )));

@@ -203,34 +203,24 @@ fn checked(plane: &Plane) -> Result<Ground, RunFailure> {
     Ok(ground)
 }
 
-/// Returns the same results as [`run_all`]. The variants of the first verdict are run first, and their verdict is
-/// reported, as for plane models.
-fn in_order(
+/// Returns the same results as [`run_all`], with a first verdict as for plane models.
+fn run_with_first_verdict(
     plane: &Plane,
     report: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Case>, RunFailure> {
     let ground = checked(plane)?;
-    let numbers = plane.numbers();
-    let of = numbers.len();
-    let (first, others) = numbers.split_at(of.min(variants::FIRST as usize + 1));
-    let run = |numbers: &[u32], before: usize| {
-        run_some(plane, &ground, numbers, &|done| {
-            report(Advance::Variants { done: before + done, of })
-        })
+    let run = |numbers: &[u32], counter: RunCounter<'_>| {
+        Ok::<_, RunFailure>(run_some(plane, &ground, numbers, counter))
     };
-    let mut cases = run(first, 0);
-    if others.is_empty() {
-        return Ok(cases);
-    }
-    let results: Vec<CaseResult> = cases.iter().map(|case| case.result.clone()).collect();
-    let finished = results.iter().all(|one| one.outcome != Ok(Outcome::Interrupted));
-    let enough = finished && others.len() >= variants::FIRST as usize;
-    if let Some(spread) = enough.then(|| Spread::of(plane, &results)).flatten() {
-        let headline = headline_in_space(&spread);
-        // A request to stop is handled by the next variant.
-        let _ = report(Advance::First { variants: variants::FIRST, headline });
-    }
-    cases.extend(run(others, first.len()));
+    let first_headline = |cases: &Vec<Case>| {
+        let results: Vec<CaseResult> = cases.iter().map(|case| case.result.clone()).collect();
+        let finished = !results.iter().any(CaseResult::is_interrupted);
+        let spread = finished.then(|| Spread::of(plane, &results))??;
+        Some(headline_in_space(&spread))
+    };
+    let (mut cases, more) =
+        variants::in_order((&plane.numbers(), 1), &run, &first_headline, report)?;
+    cases.extend(more.into_iter().flatten());
     Ok(cases)
 }
 
@@ -426,11 +416,11 @@ pub(crate) fn answered(
     let varied = !matches!(choice, RunChoice::Alone(_)) && plane.count() > 0;
     let cases = match known {
         Some(cases) if varied => cases,
-        _ if varied => in_order(&plane, &report)?,
+        _ if varied => run_with_first_verdict(&plane, &report)?,
         _ => Vec::new(),
     };
     let results: Vec<CaseResult> = cases.iter().map(|case| case.result.clone()).collect();
-    let done = results.iter().filter(|one| one.outcome != Ok(Outcome::Interrupted)).count();
+    let done = results.iter().filter(|one| !one.is_interrupted()).count();
     let unfinished = (done < results.len()).then_some(Unfinished { done, of: results.len() });
     let whole = !cases.is_empty() && unfinished.is_none();
     let spread = whole.then(|| Spread::of(&plane, &results)).flatten();

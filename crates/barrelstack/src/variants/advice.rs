@@ -72,7 +72,7 @@ impl Remedy {
         let higher = self
             .tried
             .iter()
-            .filter(|one| one.kind == "height" && one.levels > height.levels && !one.suffices);
+            .filter(|one| one.kind == "height" && one.levels > height.levels && one.is_rejected());
         let higher: Vec<u32> = higher.map(|one| one.levels).collect();
         let range = higher.iter().min().zip(higher.iter().max());
         let levels = range.map(|(least, most)| match most - least {
@@ -190,7 +190,7 @@ impl Remedy {
     /// Plots the share of variants that fall after every change; `as_it_is` is this share without a change.
     fn figure(&self, as_it_is: Option<f64>) -> Figure {
         let percent = |share: f64| 100.0 * share;
-        // Of a rejected change, at least this share of all variants falls.
+        // If not all variants were run, at least this share of all variants falls.
         let least = |one: &Tried| percent(f64::from(one.failed) / f64::from(self.variants.max(1)));
         let rows = || self.tried.iter().enumerate();
         let intervals = rows().filter_map(|(row, one)| Some((row, one.interval?.map(percent))));
@@ -204,7 +204,7 @@ impl Remedy {
         let series = [
             bars,
             points("all variants", 2, true),
-            points("rejected early: at least this share", 1, false),
+            points("not all variants were run: at least this share", 1, false),
         ];
         let mark = |at: f64, label: &str| Mark { at: percent(at), label: label.into() };
         let limit = mark(1.0 - self.required_share, "limit");
@@ -240,10 +240,10 @@ impl Remedy {
             100.0 * self.required_share,
             self.candidates
         );
-        let verdict = |one: &Tried| match (one.suffices, self.complete) {
-            (true, _) => "yes",
-            (false, true) => "no",
-            (false, false) => "not known",
+        let verdict = |one: &Tried| match one.suffices {
+            Some(true) => "yes",
+            Some(false) => "no",
+            None => "not known",
         };
         Table::of(
             caption,
@@ -271,10 +271,10 @@ impl Remedy {
 impl Remedy {
     /// Describes the number of failures, such as "1 of 64 variants" or "at least 4 of 64 variants".
     fn falls(&self, tried: &Tried) -> String {
-        let Tried { variants, failed, share, suffices, .. } = tried;
+        let Tried { variants, failed, share, .. } = tried;
         match share {
             Some(_) => format!("{failed} of {variants} variants"),
-            None if *suffices || *variants == 0 => "not known".to_owned(),
+            None if *failed == 0 => "not known".to_owned(),
             None => format!("at least {failed} of {} variants", self.variants),
         }
     }

@@ -2,14 +2,15 @@
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::remedy::RunCounter;
 use super::typical::typical;
 use super::{Plane, Spread, Variants, planes, run_as_far, together, words};
 use crate::check::check;
 use crate::compare::Comparable;
 use crate::ensemble::CaseResult;
 use crate::ground::{GroundError, from_disk};
-use crate::outcome::Outcome;
 use crate::pool;
 use crate::report::headline;
 use crate::run::{Progress, Run, RunFailure};
@@ -199,12 +200,12 @@ fn answered(
     let numbers = || planes.first().map(Plane::numbers).unwrap_or_default();
     let results = match known {
         Some(results) if varied => results,
-        _ if varied => in_order(&planes, &numbers(), &report)?,
+        _ if varied => run_planes(&planes, &numbers(), &report)?,
         _ => Vec::new(),
     };
-    let done = |one: &&CaseResult| one.outcome != Ok(Outcome::Interrupted);
     let of = results.iter().flatten().count();
-    let counts = Unfinished { done: results.iter().flatten().filter(done).count(), of };
+    let open = results.iter().flatten().filter(|one| one.is_interrupted()).count();
+    let counts = Unfinished { done: of - open, of };
     let unfinished = Some(counts).filter(|counts| counts.done < counts.of);
     let all: Vec<(Option<Variants>, Option<Vec<CaseResult>>)> = if unfinished.is_some() {
         results.into_iter().map(|some| (None, Some(some))).collect()
@@ -241,40 +242,73 @@ fn answered(
 }
 
 /// Number of variants after which a first verdict is reported, if at least as many variants follow.
-pub const FIRST: u32 = 8;
+const FIRST: u32 = 8;
 
-/// Runs the variants of the first verdict, reports that verdict, and then runs all other variants.
+/// Function that runs the cases with the given numbers, and reports the number of finished cases.
+pub type RunCases<'a, R, E> = dyn Fn(&[u32], RunCounter<'_>) -> Result<R, E> + 'a;
+
+/// Runs the variants of the first verdict, reports that verdict, and then runs all other variants. Returns the results
+/// of both parts; `None` if there are no other variants.
 ///
 /// The first verdict uses the variants with the lowest numbers. The variants that finish first
-/// would be a biased sample, because runs that collapse end early. If the computation is canceled,
-/// the unfinished variants have the outcome `Interrupted`.
-fn in_order(
+/// would be a biased sample, because runs that collapse end early.
+///
+/// `run` runs every case in the given number of planes. `headline` states the verdict on the results of the first part;
+/// `None` if some of these are unfinished.
+///
+/// # Errors
+/// Those of `run`.
+pub fn in_order<R, E>(
+    (numbers, planes): (&[u32], usize),
+    run: &RunCases<'_, R, E>,
+    headline: &dyn Fn(&R) -> Option<String>,
+    report: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
+) -> Result<(R, Option<R>), E> {
+    let of = planes * numbers.len();
+    let (first, others) = numbers.split_at(numbers.len().min(FIRST as usize + 1));
+    let finished = AtomicUsize::new(0);
+    let results = run(first, &|done| {
+        finished.fetch_max(done, Ordering::Relaxed);
+        report(Advance::Variants { done, of })
+    })?;
+    if others.is_empty() {
+        return Ok((results, None));
+    }
+    if others.len() >= FIRST as usize
+        && let Some(headline) = headline(&results)
+    {
+        // A request to stop is handled by the next variant.
+        let _ = report(Advance::First { variants: FIRST, headline });
+    }
+    let before = finished.into_inner();
+    let more = run(others, &|done| report(Advance::Variants { done: before + done, of }))?;
+    Ok((results, Some(more)))
+}
+
+/// Runs all cases of each plane, with a first verdict as in [`in_order`]. If the computation is canceled, the unfinished
+/// cases have the outcome `Interrupted`.
+fn run_planes(
     planes: &[Plane],
     numbers: &[u32],
     report: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Vec<CaseResult>>, GroundError> {
-    let of = planes.len() * numbers.len();
-    let (first, others) = numbers.split_at(numbers.len().min(FIRST as usize + 1));
-    let counted = |before: usize| {
-        move |done: usize, _: usize| report(Advance::Variants { done: before + done, of })
+    let run = |numbers: &[u32], counter: RunCounter<'_>| {
+        run_as_far(planes, numbers, &|done, _| counter(done))
     };
-    let mut results = run_as_far(planes, first, &counted(0))?;
-    if others.is_empty() {
-        return Ok(results);
-    }
-    let open = |one: &CaseResult| one.outcome == Ok(Outcome::Interrupted);
-    if others.len() >= FIRST as usize && !results.iter().flatten().any(open) {
-        let spreads = planes.iter().zip(&results);
-        let spreads: Vec<(View, Spread)> = spreads
+    let first_headline = |results: &Vec<Vec<CaseResult>>| {
+        if results.iter().flatten().any(CaseResult::is_interrupted) {
+            return None;
+        }
+        let of_planes = planes.iter().zip(results);
+        let spreads: Vec<(View, Spread)> = of_planes
             .filter_map(|(plane, results)| Some((plane.view()?, Spread::of(plane, results)?)))
             .collect();
         let of_views: Vec<(View, &Spread)> =
             spreads.iter().map(|(view, spread)| (*view, spread)).collect();
-        // A request to stop is handled by the next variant.
-        let _ = report(Advance::First { variants: FIRST, headline: words::headline(&of_views) });
-    }
-    let more = run_as_far(planes, others, &counted(planes.len() * first.len()))?;
-    for (results, more) in results.iter_mut().zip(more) {
+        Some(words::headline(&of_views))
+    };
+    let (mut results, more) = in_order((numbers, planes.len()), &run, &first_headline, report)?;
+    for (results, more) in results.iter_mut().zip(more.into_iter().flatten()) {
         results.extend(more);
     }
     Ok(results)

@@ -38,7 +38,7 @@ use crate::outcome::Outcome;
 use crate::scenario::{MotionSource, MotionSpec, Scenario, Scene, Until, View};
 use crate::watch::after_collapse;
 
-pub use answer::{Advance, Answer, FIRST, RunChoice, Shown, answer, answer_of};
+pub use answer::{Advance, Answer, RunCases, RunChoice, Shown, answer, answer_of, in_order};
 pub(crate) use answer::{common_number, run_together};
 pub use decides::{Constant, Fitted, ShareAt, Unknown};
 pub use remedy::{

@@ -73,16 +73,16 @@ described! {
         pub pretension: Option<f64> as "N",
         /// The change as overrides of the scenario.
         pub changes: Vec<String>,
-        /// True if enough variants stand.
-        pub suffices: bool,
-        /// Number of variants counted: all variants, or, if the change was rejected early, those that were run by then.
-        /// Variants that are likely to fall are run first.
+        /// True if enough variants stand; false if too many fail; null if too few were run to know, because looser straps
+        /// suffice or because the search was stopped.
+        pub suffices: Option<bool>,
+        /// Number of variants counted. Not all variants are counted if the change was rejected early or if `suffices` is
+        /// null. Variants that are likely to fall are run first.
         pub variants: u32,
         /// Number of counted variants that collapse or have no verdict, in the plane with the
         /// largest such number.
         pub failed: u32,
-        /// Share of variants that fail; null if not all variants were counted, because the change
-        /// was rejected or the search was stopped.
+        /// Share of variants that fail; null if not all variants were counted.
         pub share: Option<f64> as "1",
         /// Interval of the share of variants that fail (Clopper and Pearson, with Bonferroni's
         /// correction); the intervals of all changes and planes of the search hold simultaneously
@@ -97,6 +97,18 @@ described! {
         /// draw with equal shares counts as one half. The same draws are used for all changes. Null if `range` is null,
         /// or if the unchanged stack has no such range.
         pub better_than_as_it_is: Option<f64> as "1",
+    }
+}
+
+impl Tried {
+    /// Returns `true` if the change is known to suffice.
+    pub fn is_enough(&self) -> bool {
+        self.suffices == Some(true)
+    }
+
+    /// Returns `true` if the change is known not to suffice.
+    pub fn is_rejected(&self) -> bool {
+        self.suffices == Some(false)
     }
 }
 
@@ -288,13 +300,13 @@ fn look(
         tried.better_than_as_it_is = before.as_ref().map(|before| share_less(draws, before));
     }
     let suffices = |of: Range<usize>| {
-        of.into_iter().find(|at| tried[*at].as_ref().is_some_and(|one| one.suffices))
+        of.into_iter().find(|at| tried[*at].as_ref().is_some_and(Tried::is_enough))
     };
     let both = suffices(0..heights).zip(suffices(heights..tried.len()));
     let both = both.and_then(|(height, straps)| draws[height].as_ref().zip(draws[straps].as_ref()));
     found.height_before_straps = both.map(|(height, straps)| share_less(height, straps));
     let (lower, strapped) = tried.split_at(heights);
-    let first = |of: &[Option<Tried>]| of.iter().flatten().find(|tried| tried.suffices).cloned();
+    let first = |of: &[Option<Tried>]| of.iter().flatten().find(|tried| tried.is_enough()).cloned();
     (found.height, found.straps) = (first(lower), first(strapped));
     found.tried = tried.into_iter().flatten().collect();
     found.candidates = u32::try_from(plan.changes()).unwrap_or(u32::MAX);
@@ -418,7 +430,7 @@ impl Change {
             levels: *levels,
             pretension: *pretension,
             changes: changes.clone(),
-            suffices: counts.suffices(plan),
+            suffices: counts.verdict(plan),
             variants: counts.ran,
             failed: counts.failed,
             share: whole.then(|| f64::from(counts.failed) / f64::from(counts.ran)),

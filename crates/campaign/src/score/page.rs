@@ -314,8 +314,8 @@ pub(super) fn rules(sheet: &Sheet) -> Vec<String> {
         "States: as good as new; wet cradles, with a friction coefficient of 0.2 between barrels and racks; and each \
          device in worn condition, one at a time."
             .into(),
-        "Collapse: a barrel or a rack loses its seat. A run ends 2 s after the collapse, or once the stack has come \
-         to rest on ground that stays below 0.02 g."
+        "Collapse: a barrel or a rack loses its seat. A run ends 2 s after the collapse; if the stack does not \
+         collapse, the run ends when all bodies are at rest and the ground acceleration stays below 0.02 g."
             .into(),
         "A protocol never changes; any change requires a new version number.".into(),
     ];

@@ -193,9 +193,10 @@ fn read_sine(reader: Reader<'_>) -> Result<Sine, InputError> {
     let ramp_cycles = reader.number("ramp_cycles")?;
     if 2.0 * ramp_cycles > cycles {
         let message = format!(
-            "`{}` is {ramp_cycles}, but the ramps at both ends must fit into {cycles} cycles; state at most half of \
-             these cycles",
-            reader.path_of("ramp_cycles")
+            "`{}` is {ramp_cycles}, but the motion has {cycles} cycles, and the ramps at its two ends must fit into \
+             them; state at most {}",
+            reader.path_of("ramp_cycles"),
+            0.5 * cycles
         );
         return Err(reader.inconsistent("ramp_cycles", message));
     }

@@ -19,8 +19,8 @@ section! {
     /// the stack as stated.
     variants: u32 = Kind::Integer(0, 4096), Default::Value("64");
     /// Criterion that ends the variants; used only if `run.until` is "rest". The value "verdict" ends a variant 2 s
-    /// after its first loss of a seat, or when it is at rest on ground that stays below 0.02 g. The value "rest" ends a
-    /// variant when all bodies have come to rest.
+    /// after its first loss of a seat; a variant without such a loss ends when all bodies are at rest and the ground
+    /// acceleration stays below 0.02 g. The value "rest" ends a variant when all bodies have come to rest.
     until: Until = Kind::Choice(names::<Until>), Default::Value("\"verdict\"");
     /// Seed of the random numbers from which the imperfections and the unknown constants of the variants are drawn.
     seed: u32 = Kind::Integer(0, u32::MAX as i64), Default::Value("1");

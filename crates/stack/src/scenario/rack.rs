@@ -110,7 +110,7 @@ known! {
     mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), CATALOG;
     /// Number of barrels side by side on one rack, across the barrels.
     barrels: u32 = Kind::Integer(1, 40), CATALOG;
-    /// Number of barrels end to end on one rack, along the barrels.
+    /// Number of barrels on one rack that lie head to head.
     barrels_deep: u32 = Kind::Integer(1, 40), CATALOG;
     /// Distance between the axes of neighboring barrels.
     pitch: f64 = size(0.05, 10.0), CATALOG;
@@ -124,7 +124,7 @@ known! {
     incline: f64 = Kind::Quantity(&[Dimension::ANGLE], Range::between(-0.2, 0.2)), CATALOG;
     /// Height of the lowest point of a carried barrel above the underside of the rack.
     clearance: f64 = size(1e-3, 10.0), CATALOG;
-    /// Height of the beams of the rack, without its feet.
+    /// Height of the beams of the rack; the feet are not included.
     beam_height: f64 = size(1e-3, 10.0), CATALOG;
     /// Height of the feet under the beams, with one foot over each barrel below; 0 for straight tubes without feet.
     foot_height: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), CATALOG;

@@ -84,9 +84,10 @@ section! {
     pub struct RunSpec;
     /// Settings of the run.
     pub static RUN = "run", by method of METHODS;
-    /// Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and all
-    /// bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack has
-    /// come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest",
+    /// Criterion that ends the run. "rest" ends it when the ground is still and all bodies are at rest; after a
+    /// collapse, it is enough that the ground acceleration stays below 0.02 g. "verdict" ends it 2 s after the first
+    /// loss of a seat; a run without such a loss ends when all bodies are at rest and the ground acceleration stays
+    /// below 0.02 g. "duration" ends it when `duration` is over. With "rest",
     /// `imperfections.until` determines when the runs of the variants end.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");

@@ -59,16 +59,6 @@ impl Opened {
         Ok(Self { sources, table, access })
     }
 
-    /// Returns a title that was read from the file; if overrides changed what it describes, or if it belongs to an
-    /// extended file, ", changed" is appended.
-    pub fn titled(&self, title: &str) -> String {
-        if load::title_applies(&self.sources, &self.table) {
-            title.to_owned()
-        } else {
-            without_changed(title).to_owned() + CHANGED
-        }
-    }
-
     /// Returns the name of the file without its extension.
     pub fn stem(&self) -> String {
         load::stem(&self.sources.files[0].name)

@@ -7,7 +7,8 @@
 //! after the first block that brings it above the admissible number of failures among all variants,
 //! so the order does not affect which changes suffice, only how many runs a rejected change takes.
 //! The failure share of a rejected change is unknown, since the counted variants are a biased
-//! sample. If all variants of a change were counted, its failure share has a confidence interval.
+//! sample. A pretension whose first block is not rejected is not run further if looser straps suffice; whether it
+//! suffices is then not known. If all variants of a change were counted, its failure share has a confidence interval.
 //! These intervals hold simultaneously for all changes and planes of the search (Bonferroni), so
 //! choosing among the changes does not invalidate them.
 
@@ -139,8 +140,13 @@ impl Counts {
         self.ran > 0 && self.ran == plan.variants()
     }
 
-    pub(super) fn suffices(&self, plan: &Plan) -> bool {
-        self.whole(plan) && !self.rejected(plan)
+    /// Returns whether the change suffices; `None` if that is not known, because not all variants were counted.
+    pub(super) fn verdict(&self, plan: &Plan) -> Option<bool> {
+        if self.rejected(plan) { Some(false) } else { self.whole(plan).then_some(true) }
+    }
+
+    fn suffices(&self, plan: &Plan) -> bool {
+        self.verdict(plan) == Some(true)
     }
 
     /// Returns the confidence interval of the share of variants that fail, in the plane in which more variants fail;
@@ -398,8 +404,33 @@ mod tests {
         let Ok(found) = search(&plan, &mut run);
         assert!(!found.complete);
         assert!(
-            found.counts.iter().flatten().all(|counts| counts.ran == 8 && !counts.suffices(&plan))
+            found
+                .counts
+                .iter()
+                .flatten()
+                .all(|counts| counts.ran == 8 && counts.verdict(&plan).is_none())
         );
+    }
+
+    /// If looser straps suffice, tighter straps that were not rejected are not run further.
+    #[test]
+    fn straps_that_were_not_run_to_the_end_are_neither_sufficient_nor_rejected() {
+        let plan = Plan { heights: 0, straps: 5, order: (0..64).collect(), first: 8, planes: 1 };
+        // One variant falls with every pretension, and all variants fall with the loosest straps.
+        let fails = |change: usize, variant: u32| change == 0 || variant == 0;
+        let mut run = |change: usize, block: &[u32]| {
+            let verdicts = block.iter().map(|variant| Some(fails(change, *variant))).collect();
+            Ok::<_, Infallible>(ControlFlow::Continue(vec![verdicts]))
+        };
+        let Ok(found) = search(&plan, &mut run);
+        assert!(found.complete);
+        let counts = |change: usize| found.counts[change].as_ref();
+        let verdicts: Vec<Option<(u32, u32, Option<bool>)>> = (0..5)
+            .map(|change| counts(change).map(|one| (one.ran, one.failed, one.verdict(&plan))))
+            .collect();
+        let expected =
+            [Some((8, 8, Some(false))), Some((64, 1, Some(true))), Some((8, 1, None)), None, None];
+        assert_eq!(verdicts, expected);
     }
 
     /// The first block can reject a change, even if fewer variants would fill the cores.

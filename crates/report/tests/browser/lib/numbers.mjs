@@ -106,8 +106,9 @@ export async function ofRun(page, summary) {
     demand(table.rows.length === summary.remedy.tried.length, "the page lists other changes than the JSON");
     summary.remedy.tried.forEach(({ failed, variants, share, interval, range, better_than_as_it_is }, at) => {
       const [name, counts, shares, , over, better] = table.rows[at];
-      // Of a change that was rejected early, the page states that at least so many of all variants fall.
-      reading.are(name, counts, [failed, share === null ? summary.remedy.variants : variants]);
+      // If not all variants were run, the page states that at least so many of all variants fall, if any did.
+      const least = failed ? [failed, summary.remedy.variants] : [];
+      reading.are(name, counts, share === null ? least : [failed, variants]);
       reading.are(name, shares, share === null ? [null] : percents([share, ...interval]));
       reading.are(name, over, range === null ? [null] : percents(range));
       reading.are(name, better, better_than_as_it_is === null ? [null] : percents([better_than_as_it_is]));
