@@ -9,6 +9,7 @@ mod search;
 
 use std::fmt;
 use std::ops::{ControlFlow, Range};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use barrelstack_dynamics::lanes::LANES;
@@ -156,7 +157,7 @@ pub type Observer<'a> = &'a (dyn Fn(Attempt<'_>) -> ControlFlow<()> + Sync);
 pub type RunCounter<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
 /// Variants of a changed stack, prepared to be run in blocks.
-pub trait Trial {
+pub trait Trial: Send {
     /// Runs the variants whose indices are in `block`, in every plane; index 0 is the variant with the number 1.
     ///
     /// Returns the verdicts in each plane, in the order of the block, or `Break` if the observer cancels. The observer
@@ -165,7 +166,7 @@ pub trait Trial {
 }
 
 /// Function that prepares the variants of a changed stack.
-type Prepare<'a> = dyn Fn(&Scenario) -> Result<Box<dyn Trial>, GroundError> + 'a;
+type Prepare<'a> = dyn Fn(&Scenario) -> Result<Box<dyn Trial>, GroundError> + Sync + 'a;
 
 /// Searches for the largest number of levels, and for the loosest straps, with which at least
 /// [`ENOUGH`] percent of the variants of a stack stand in every plane.
@@ -269,20 +270,22 @@ fn look(
         first: u32::try_from(first).unwrap_or(u32::MAX),
         planes: planes.len(),
     };
-    let mut started: Vec<Option<Started>> = changes.iter().map(|_| None).collect();
-    let mut count = 0;
-    let mut run = |change: usize, block: &[u32]| {
-        let Started { trial, number, stack } = match &mut started[change] {
+    let started: Vec<Mutex<Option<Started>>> = changes.iter().map(|_| Mutex::new(None)).collect();
+    let count = AtomicUsize::new(0);
+    let run = |change: usize, block: &[u32]| {
+        // A trial is used by one thread at a time; a poisoned lock is that of a thread that has panicked.
+        let Ok(mut started) = started[change].lock() else { return Ok(ControlFlow::Break(())) };
+        let Started { trial, number, stack } = match &mut *started {
             Some(started) => started,
             none => {
-                count += 1;
-                none.insert(changes[change].start(prepare, count)?)
+                let number = count.fetch_add(1, Ordering::Relaxed) + 1;
+                none.insert(changes[change].start(prepare, number)?)
             }
         };
         let attempt = Attempt { stack, number: *number, ..plan.attempt() };
         Ok(trial.run(block, &|done| observer(Attempt { done, ..attempt })))
     };
-    let search::Found { counts, complete } = search::search::<GroundError>(&plan, &mut run)?;
+    let search::Found { counts, complete } = search::search::<GroundError>(&plan, &run)?;
     let mut tried: Vec<Option<Tried>> = changes
         .iter()
         .zip(&counts)

@@ -19,6 +19,7 @@ use barrelstack_fragility::{Interval, clopper_pearson};
 
 use super::super::spread::LEVEL;
 use super::Attempt;
+use crate::pool;
 
 /// Share (%) of variants that must stand in every plane.
 pub const ENOUGH: u32 = 95;
@@ -176,26 +177,41 @@ pub type Judged = ControlFlow<(), Verdicts>;
 
 /// Function that runs a block of variants of one change. Its arguments are the index of the change and the indices of
 /// the variants; index 0 is the variant with the number 1.
-type RunBlock<'a, E> = dyn FnMut(usize, &[u32]) -> Result<Judged, E> + 'a;
+type RunBlock<'a, E> = dyn Fn(usize, &[u32]) -> Result<Judged, E> + Sync + 'a;
 
 fn failed(verdict: Verdict) -> bool {
     verdict != Some(false)
 }
 
 /// Tries changes until the highest sufficient stack and the loosest sufficient straps are found.
-pub(super) fn search<E>(plan: &Plan, run: &mut RunBlock<'_, E>) -> Result<Found, E> {
-    let (counts, failures) = (vec![None; plan.changes()], vec![0; plan.order.len()]);
-    let mut all = Search { plan, counts, failures, run };
-    let complete = all.heights()?.is_continue() && all.straps()?.is_continue();
-    Ok(Found { counts: all.counts, complete })
+///
+/// Heights and straps are tried at the same time. Neither affects the order of the other, so the counts do not depend
+/// on the number of threads.
+pub(super) fn search<E: Send>(plan: &Plan, run: &RunBlock<'_, E>) -> Result<Found, E> {
+    let half = |straps: &bool| {
+        let (counts, failures) = (vec![None; plan.changes()], vec![0; plan.order.len()]);
+        let mut half = Search { plan, counts, failures, run };
+        let end = if *straps { half.straps() } else { half.heights() };
+        end.map(|end| (half.counts, end.is_continue()))
+    };
+    let halves = pool::map(&[false, true], half, &|_| ());
+    let halves = halves.into_iter().collect::<Result<Vec<_>, E>>()?;
+    let mut found = Found { counts: vec![None; plan.changes()], complete: true };
+    for (counts, complete) in halves {
+        let both = found.counts.into_iter().zip(counts);
+        found.counts = both.map(|(one, other)| one.or(other)).collect();
+        found.complete &= complete;
+    }
+    Ok(found)
 }
 
+/// Search among the changes of height, or among the straps.
 struct Search<'a, 'b, E> {
     plan: &'a Plan,
     counts: Vec<Option<Counts>>,
-    /// For each variant, the number of planes and changes in which it failed.
+    /// For each variant, the number of planes and changes of this search in which it failed.
     failures: Vec<u32>,
-    run: &'a mut RunBlock<'b, E>,
+    run: &'a RunBlock<'b, E>,
 }
 
 impl<E> Search<'_, '_, E> {
@@ -268,6 +284,7 @@ impl<E> Search<'_, '_, E> {
 #[cfg(test)]
 mod tests {
     use std::convert::Infallible;
+    use std::sync::Mutex;
 
     use barrelstack_motion::Random;
 
@@ -305,13 +322,17 @@ mod tests {
             for part in [0..plan.heights, plan.heights..plan.changes()] {
                 chances[part].sort_by(|a, b| b[0].max(b[1]).total_cmp(&a[0].max(a[1])));
             }
-            let mut run = |change: usize, block: &[u32]| {
-                let planes: [f64; 2] = chances[change];
-                let verdicts = planes
-                    .map(|chance| block.iter().map(|_| Some(random.uniform() < chance)).collect());
-                Ok::<_, Infallible>(ControlFlow::Continue(verdicts.to_vec()))
+            let mut draw = |chance: f64| (0..64).map(|_| random.uniform() < chance).collect();
+            let fails: Vec<[Vec<bool>; 2]> =
+                chances.iter().map(|planes| planes.map(&mut draw)).collect();
+            let run = |change: usize, block: &[u32]| {
+                let of = |fails: &Vec<bool>| {
+                    block.iter().map(|variant| Some(fails[*variant as usize])).collect()
+                };
+                let verdicts = fails[change].iter().map(of).collect();
+                Ok::<_, Infallible>(ControlFlow::Continue(verdicts))
             };
-            let Ok(all) = search(&plan, &mut run);
+            let Ok(all) = search(&plan, &run);
             assert!(all.complete);
             let mut whole = true;
             for (counts, chance) in all.counts.iter().zip(&chances) {
@@ -374,18 +395,18 @@ mod tests {
     #[test]
     fn a_rejected_change_has_counts_of_whole_blocks_and_no_share() {
         let plan = one_change(64, 8);
-        let mut blocks = Vec::new();
-        let mut run = |_, block: &[u32]| {
+        let blocks = Mutex::new(Vec::new());
+        let run = |_, block: &[u32]| {
             // In both planes, the first variant collapses; in the second plane, the second variant has no verdict.
             let mut verdicts = vec![vec![Some(false); block.len()]; 2];
             (verdicts[0][0], verdicts[1][0], verdicts[1][1]) = (Some(true), Some(true), None);
-            blocks.push(block.to_vec());
+            blocks.lock().unwrap().push(block.to_vec());
             Ok::<_, Infallible>(ControlFlow::Continue(verdicts))
         };
-        let Ok(found) = search(&plan, &mut run);
+        let Ok(found) = search(&plan, &run);
         let counts = found.counts[0].clone().unwrap_or_else(|| panic!("it was tried"));
         let expected: [Vec<u32>; 2] = [(56..64).rev().collect(), (40..56).rev().collect()];
-        assert_eq!(blocks, expected);
+        assert_eq!(blocks.into_inner().unwrap(), expected);
         assert_eq!((counts.ran, counts.failed, counts.interval(&plan)), (24, 4, None));
         assert!(!counts.suffices(&plan) && counts.verdicts(&plan).is_none());
     }
@@ -393,7 +414,7 @@ mod tests {
     #[test]
     fn a_block_that_is_broken_off_does_not_count() {
         let plan = Plan { heights: 0, straps: 2, order: (0..64).collect(), first: 8, planes: 1 };
-        let mut run = |_, block: &[u32]| {
+        let run = |_, block: &[u32]| {
             let over = block[0] > 0;
             Ok::<_, Infallible>(if over {
                 ControlFlow::Break(())
@@ -401,7 +422,7 @@ mod tests {
                 ControlFlow::Continue(vec![vec![Some(false); block.len()]])
             })
         };
-        let Ok(found) = search(&plan, &mut run);
+        let Ok(found) = search(&plan, &run);
         assert!(!found.complete);
         assert!(
             found
@@ -418,11 +439,11 @@ mod tests {
         let plan = Plan { heights: 0, straps: 5, order: (0..64).collect(), first: 8, planes: 1 };
         // One variant falls with every pretension, and all variants fall with the loosest straps.
         let fails = |change: usize, variant: u32| change == 0 || variant == 0;
-        let mut run = |change: usize, block: &[u32]| {
+        let run = |change: usize, block: &[u32]| {
             let verdicts = block.iter().map(|variant| Some(fails(change, *variant))).collect();
             Ok::<_, Infallible>(ControlFlow::Continue(vec![verdicts]))
         };
-        let Ok(found) = search(&plan, &mut run);
+        let Ok(found) = search(&plan, &run);
         assert!(found.complete);
         let counts = |change: usize| found.counts[change].as_ref();
         let verdicts: Vec<Option<(u32, u32, Option<bool>)>> = (0..5)
@@ -439,14 +460,14 @@ mod tests {
         for (variants, admissible) in [(16, 0), (19, 0), (20, 1), (64, 3), (1000, 50)] {
             let plan = one_change(variants, 2);
             assert_eq!(plan.admissible(), admissible);
-            let mut ran = Vec::new();
-            let mut run = |_, block: &[u32]| {
-                ran.push(block.len());
+            let ran = Mutex::new(Vec::new());
+            let run = |_, block: &[u32]| {
+                ran.lock().unwrap().push(block.len());
                 let all = vec![Some(true); block.len()];
                 Ok::<_, Infallible>(ControlFlow::Continue(vec![all.clone(), all]))
             };
-            let Ok(_) = search(&plan, &mut run);
-            assert_eq!(ran, [(admissible as usize + 1).max(2)]);
+            let Ok(_) = search(&plan, &run);
+            assert_eq!(ran.into_inner().unwrap(), [(admissible as usize + 1).max(2)]);
         }
     }
 
@@ -456,17 +477,22 @@ mod tests {
         // Of four changes of height, each is rejected by one variant, except for the last.
         let plan = Plan { heights: 4, straps: 0, order: (0..16).collect(), first: 2, planes: 1 };
         let fails = |change: usize, variant: u32| change < 3 && variant == 13;
-        let mut blocks = Vec::new();
-        let mut run = |change: usize, block: &[u32]| {
-            blocks.push((change, block.to_vec()));
+        let blocks = Mutex::new(Vec::new());
+        let run = |change: usize, block: &[u32]| {
+            blocks.lock().unwrap().push((change, block.to_vec()));
             let verdicts = block.iter().map(|variant| Some(fails(change, *variant))).collect();
             Ok::<_, Infallible>(ControlFlow::Continue(vec![verdicts]))
         };
-        let Ok(found) = search(&plan, &mut run);
+        let Ok(found) = search(&plan, &run);
         let counts: Vec<(u32, u32)> =
             found.counts.iter().flatten().map(|counts| (counts.ran, counts.failed)).collect();
         assert_eq!(counts, [(16, 1), (2, 1), (2, 1), (16, 0)]);
-        let blocks: Vec<_> = blocks.into_iter().filter(|(_, block)| block.len() == 2).collect();
+        let blocks: Vec<_> = blocks
+            .into_inner()
+            .unwrap()
+            .into_iter()
+            .filter(|(_, block)| block.len() == 2)
+            .collect();
         assert_eq!(blocks[0], (0, vec![0, 1]));
         assert_eq!(blocks[1..], [1, 2, 3].map(|change| (change, vec![13, 0])));
         let whole = found.counts[0].as_ref().and_then(|counts| counts.verdicts(&plan));
@@ -488,12 +514,12 @@ mod tests {
             for (first, shift) in [(8, 0), (2, 17), (64, 40)] {
                 let order = (0..64).map(|index| (index + shift) % 64).collect();
                 let plan = Plan { heights, straps: 0, order, first, planes: 1 };
-                let mut run = |change: usize, block: &[u32]| {
+                let run = |change: usize, block: &[u32]| {
                     let fails = &fails[change];
                     let verdicts = block.iter().map(|one| Some(fails[*one as usize])).collect();
                     Ok::<_, Infallible>(ControlFlow::Continue(vec![verdicts]))
                 };
-                let Ok(found) = search(&plan, &mut run);
+                let Ok(found) = search(&plan, &run);
                 let suffices = |counts: &Option<Counts>| {
                     let counts = counts.as_ref().filter(|counts| counts.suffices(&plan))?;
                     Some((counts.failed, counts.interval(&plan), counts.verdicts(&plan)))
