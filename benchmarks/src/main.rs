@@ -38,7 +38,7 @@ use barrelstack_dynamics::Method;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Number of cases that are run by default, of the study of ten thousand cases.
+/// Default number of cases that are run, out of the ten thousand of the study.
 const CASES: usize = 128;
 
 fn main() -> Result<(), Failure> {

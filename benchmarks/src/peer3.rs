@@ -8,7 +8,7 @@ use rapier3d::prelude::*;
 
 use crate::time;
 
-/// Time step (s) at which the answer of Rapier no longer changes for this scene.
+/// Time step (s) at which the result of Rapier has converged for this scene.
 pub(crate) const SETTLED: f64 = 0.5e-3;
 
 /// Radius (m) of the ball that represents a node.
@@ -25,7 +25,7 @@ pub(crate) struct Stage<'a> {
     pub(crate) duration: f64,
 }
 
-/// Cost of a run, and what it did.
+/// Cost of a run, and its largest drop.
 pub(crate) struct Found {
     /// Processor time (s) per simulated second.
     pub(crate) second: f64,

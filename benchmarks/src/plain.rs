@@ -65,7 +65,7 @@ struct Touch {
 pub(crate) struct Costs {
     /// The stack stands.
     pub(crate) standing: f64,
-    /// The stack falls within two seconds and is followed for twelve.
+    /// The stack falls within two seconds and is simulated for twelve.
     pub(crate) falling: f64,
 }
 
@@ -196,7 +196,7 @@ impl Stack {
         }
     }
 
-    /// Feet of a rack on the ground, and its supports on all barrels.
+    /// Computes the contacts of the feet of a rack with the ground and of its supports with all barrels.
     fn rack(&mut self, rack: usize, spring: &mut usize) {
         let Body { at, angle, .. } = self.bodies[rack];
         let (sin, cos) = angle.sin_cos();
@@ -227,7 +227,8 @@ impl Stack {
         }
     }
 
-    /// A barrel on the ground, on the beams of the racks of other levels, and on the barrels after it.
+    /// Computes the contacts of a barrel with the ground, with the beams of the racks of other levels, and with the
+    /// barrels of higher index.
     fn barrel(&mut self, barrel: usize, spring: &mut usize) {
         let at = self.bodies[barrel].at;
         let point = [at[0], at[1] - RADIUS];
@@ -250,8 +251,9 @@ impl Stack {
         }
     }
 
-    /// A barrel on another body, whose point nearest to its center is at `away` (m) from it, or whose center
-    /// is, if both are barrels; they touch if this is less than `reach` (m).
+    /// Computes the contact of a barrel with another body. `away` (m) is the vector to the center of the barrel from
+    /// the nearest point of the other body or, if both are barrels, from its center. The bodies touch if `away` is
+    /// shorter than `reach` (m).
     fn round(&mut self, barrel: usize, by: usize, away: [f64; 2], reach: f64, spring: &mut usize) {
         let squared = away[0] * away[0] + away[1] * away[1];
         if squared >= reach * reach || squared == 0.0 {

@@ -1,8 +1,8 @@
 //! Shares of time by phase of the step, for typical runs.
 //!
 //! `perf` of Linux samples this program while it runs one kind of work, and `addr2line` names the source
-//! lines of each sample, the inlined ones too. A sample belongs to the phase of the innermost line of the
-//! engine that is not mere arithmetic.
+//! lines of each sample, including those of inlined functions. A sample belongs to the phase of the innermost source
+//! line of the engine that is not basic arithmetic.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Write as _;
@@ -22,8 +22,8 @@ const KINDS: [(&str, &str); 4] = [
     ("space", "three dimensions, single run standing"),
 ];
 
-/// Phases by the beginning of the path below `crates`; the first that fits counts, and an empty name marks
-/// arithmetic, which belongs to the phase that needs it.
+/// Phases by the beginning of the path below `crates`; the first match applies. An empty name marks arithmetic, which
+/// is counted in the phase that uses it.
 const PHASES: [(&str, &str); 23] = [
     ("dynamics/src/real.rs", ""),
     ("dynamics/src/math.rs", ""),
@@ -82,7 +82,7 @@ pub(crate) fn print() -> Result<(), Failure> {
     for phase in phases {
         let cells = shares.iter().map(|all| all.get(phase).copied().unwrap_or_default());
         let cells: Vec<f64> = cells.collect();
-        // A row of zeros says nothing.
+        // Rows that would show only zeros are left out.
         if cells.iter().all(|share| *share < 0.005) {
             continue;
         }

@@ -17,9 +17,9 @@ const FIRST: &str = "after the first";
 pub(crate) struct Demo {
     /// The first sentence.
     pub(crate) first: f64,
-    /// The whole answer, with the change that would have prevented the collapse.
+    /// The whole answer without a page, with the change that would have prevented the collapse.
     pub(crate) answer: f64,
-    /// The same with a page: the end of the command.
+    /// The whole answer with a page, until the command ends.
     pub(crate) page: f64,
     /// Least processor time (s) of all cores together, without a page and with one.
     pub(crate) spent: [f64; 2],
@@ -62,7 +62,7 @@ pub(crate) fn demo(program: &Path, repeats: usize) -> Result<Demo, Failure> {
         least.page = least.page.min(page.end);
         least.spent = [least.spent[0].min(answer.spent), least.spent[1].min(page.spent)];
     }
-    // The folder holds a copy of what anyone can compute.
+    // The folder holds only results that can be computed again.
     std::fs::remove_dir_all(&folder)?;
     Ok(least)
 }
@@ -76,7 +76,7 @@ pub(crate) fn protect(program: &Path) -> Result<(f64, f64), Failure> {
     Ok((times.end, times.spent))
 }
 
-/// Times (s) of one command: of the first verdict and of the end by the clock, and of the processor.
+/// Times (s) of one command: until the first verdict and until the end, both by the clock; then the processor time.
 struct Times {
     first: Option<f64>,
     end: f64,

@@ -31,7 +31,7 @@ const ANGLE: f64 = 20.0;
 /// Friction coefficients of the peers, on the ground and between bodies.
 const FRICTION: [f64; 2] = [0.5, 0.22];
 
-/// What is measured, in the unit of its target.
+/// Measured quantity, in the unit of its target.
 enum Figure {
     /// Processor time (s) per simulated second, printed in ms; less is better.
     Cost(f64),
@@ -46,9 +46,9 @@ struct Row {
     what: String,
     figure: Figure,
     target: f64,
-    /// Cheapest peer, with what it needs for the same work, in seconds of the figure.
+    /// Cheapest peer, with its time (s) for the same work.
     peer: Option<(String, f64)>,
-    /// What the plain loop needs for the same work.
+    /// Time (s) of the plain loop for the same work.
     plain: Option<f64>,
 }
 
@@ -126,7 +126,7 @@ pub(crate) fn print(cases: usize, protect: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns how busy the machine is, and its processor.
+/// Describes the load and the processor of the machine.
 fn busy() -> String {
     let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
     let load: Vec<&str> = load.split(' ').take(3).collect();
@@ -163,7 +163,7 @@ fn peers() -> Result<Peers, Failure> {
     })
 }
 
-/// Measures the peers and prints what they cost.
+/// Measures the peers and prints their costs.
 fn measured(what: &str, stage: &peer::Stage<'_>) -> Result<Vec<peer::Cost>, Failure> {
     let costs = peer::costs(stage, peer::COARSE)?;
     let words: Vec<String> = costs
@@ -325,7 +325,7 @@ fn spatial() -> Result<Vec<Row>, Failure> {
     let coarse = peers(&coarse, "Rapier 3-D");
     let fine = peers(&settled, "Rapier 3-D, steps of 0.5 ms");
     let mut rows = Vec::new();
-    for (peer, remark) in [(&coarse, ""), (&fine, ", beside the peer at its settled step")] {
+    for (peer, remark) in [(&coarse, ""), (&fine, ", compared with the peer at steps of 0.5 ms")] {
         let what = |words: &str| format!("{words}{remark}");
         rows.push(
             Row::new(

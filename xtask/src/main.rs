@@ -101,7 +101,7 @@ fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
     })
 }
 
-/// Runs a program of the workspace in the release profile, and returns whether it succeeded.
+/// Runs a program of the workspace in the release profile, and returns `true` if the program succeeded.
 ///
 /// `program` contains the arguments by which cargo selects the program; `words` are the arguments of the program.
 fn release(program: &[&str], words: &[&str]) -> ExitCode {

@@ -298,7 +298,7 @@ pub fn files(answer: &Answer, language: Language) -> Result<Vec<(String, Vec<u8>
     ];
     let both = answer.other.is_some();
     for run in std::iter::once(run).chain(answer.other.as_ref().map(|other| &other.run)) {
-        // With two planes, each has its own files.
+        // If the run has two planes, each plane has its own files.
         let view = run.assembly.view.filter(|_| both);
         let plane = view.map_or_else(String::new, |view| format!("{}-", view.name()));
         let npz = format!("{plane}histories.npz");

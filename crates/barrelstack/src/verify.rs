@@ -457,7 +457,8 @@ impl Verification {
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
         sentences.push(match self.predictable_until {
             Some(time) => format!(
-                "Details are predictable until {time:.2} s; after that, a body in some repeat is more than {centimeters} cm from its position in this run, so the run shows only one possible course."
+                "Details are predictable until {time:.2} s; after that, a body in at least one repeat is more than \
+                 {centimeters} cm from its position in this run, so the run shows only one possible course of events."
             ),
             None => format!(
                 "Details are predictable to the end: in every repeat each body stays within \
@@ -476,7 +477,8 @@ impl Verification {
         let predictable = match self.predictable_until {
             None if self.repeats.is_empty() => UNKNOWN.to_owned(),
             Some(time) => format!(
-                "until {time:.2} s; after that, a body in some repeat is more than {centimeters} cm from its position in the run"
+                "until {time:.2} s; after that, a body in at least one repeat is more than {centimeters} cm from its \
+                 position in the run"
             ),
             None => {
                 format!(

@@ -173,8 +173,8 @@ fn sentences_say_what_suffices_and_what_does_not() {
             Some(height(1)),
             Some(straps(0)),
             &both,
-            "A stack of three levels would have stood in 63 of 64 variants, and one of five levels held together by \
-             straps tightened to 4 kN in all 64 variants. At most 12 % of stacks with the first change and 9 % of \
+            "A stack of three levels would have stood in 63 of 64 variants, and a stack of five levels held together \
+             by straps tightened to 4 kN in all 64 variants. At most 12 % of stacks with the first change and 9 % of \
              stacks with the second would fall (95 % confidence, corrected for trying up to 9 changes).",
         ),
         (
@@ -197,8 +197,7 @@ fn sentences_say_what_suffices_and_what_does_not() {
             None,
             None,
             &both,
-            "None of the changes that were tried would have kept the stack up: neither fewer levels, down to one, nor straps tightened \
-             to 4 kN.",
+            "Neither fewer levels (down to one) nor straps tightened to 4 kN would have kept the stack up.",
         ),
     ] {
         assert_eq!(said(height, straps, all), words);
@@ -237,14 +236,14 @@ fn sentences_say_which_levels_were_tried_and_not_enough() {
         (
             &[4, 3, 2, 1][..],
             &loose[..],
-            "A stack of one level would have stood in all 16 variants. Two to four levels, and straps tightened to 3 \
-             or 5 kN, would not have been enough.",
+            "A stack of one level would have stood in all 16 variants. Neither two to four levels nor straps \
+             tightened to 3 or 5 kN would have been enough.",
         ),
         (
             &[4, 3, 2],
             &loose,
-            "A stack of two levels would have stood in all 16 variants. Three or four levels, and straps tightened to \
-             3 or 5 kN, would not have been enough.",
+            "A stack of two levels would have stood in all 16 variants. Neither three or four levels nor straps \
+             tightened to 3 or 5 kN would have been enough.",
         ),
         (
             &[4, 3],

@@ -290,7 +290,8 @@ fn every_integrator_keeps_the_restitution_that_a_free_scene_states_or_warns() {
             let changes = [&[restitution.as_str()], method].concat().into_iter().map(str::to_owned);
             let changes: Vec<String> = changes.collect();
             let run = Scenario::builtin("bouncing-disc", &changes).unwrap().run().unwrap();
-            let warned = run.warnings.iter().any(|text| text.contains("may miss the restitution"));
+            let warned =
+                run.warnings.iter().any(|text| text.contains("the restitution may differ"));
             assert_eq!(warned, method.iter().any(|change| change.contains("tolerance")));
             if warned {
                 continue;

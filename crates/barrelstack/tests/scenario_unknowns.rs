@@ -49,7 +49,7 @@ fn former_keys_give_the_same_scenario_and_a_warning_each() {
     assert_eq!((former.warnings().len(), present.warnings().len()), (7, 0));
     assert_eq!(
         former.warnings()[0],
-        "mine.toml:5:1: `imperfections.friction` is a former name, which a later version will refuse: write \
+        "mine.toml:5:1: `imperfections.friction` is an old name, and a later version will reject it: write \
          `unknowns.friction` instead"
     );
     assert!(former.warnings()[6].ends_with("write `unknowns.drawn = false` instead"));

@@ -234,9 +234,10 @@ fn crushed_staves_are_in_the_verdict_of_a_run_that_stands() {
     };
     let (headline, load) = said("1 kN");
     assert!(load > 1.0, "{load}");
-    let stated = format!("they carry up to {:.0} % of their stated capacity.", 100.0 * load);
-    let stands = "Shaken across the barrels, the stack stands until 8.0 s, where the run ends, 27.0 s before the motion \
-                  does";
+    let stated =
+        format!("their load reaches up to {:.0} % of their stated capacity.", 100.0 * load);
+    let stands = "Shaken across the barrels, the stack stands until the run ends at 8.0 s, 27.0 s before the end \
+                  of the motion";
     assert_eq!(headline, format!("{stands}, but staves are crushed: {stated}"));
     let (headline, load) = said("1 MN");
     assert!(load < 1.0, "{load}");

@@ -74,7 +74,7 @@ fn falls_are_counted_as_long_as_every_variant_is_followed_after_its_first_loss()
     // Measured: 0.3 s, to within one step of 0.4 ms.
     assert!((cut.counted_for.unwrap() - 0.3).abs() < 1e-3, "{:?}", cut.counted_for);
     assert_eq!(cut.first_loss, whole.first_loss);
-    assert!(words::course(&cut).ends_with(" within 0.3 s of that"), "{}", words::course(&cut));
+    assert!(words::course(&cut).ends_with(" within 0.3 s of that loss"), "{}", words::course(&cut));
 }
 
 #[test]

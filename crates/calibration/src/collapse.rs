@@ -221,8 +221,8 @@ pub fn collapse(
             ));
             if share < UNSEEN {
                 warnings.push(format!(
-                    "test {}: the model hardly reproduces the observed mode ({name}, with {:.0} % of the \
-                     weight): check that motion, geometry and the definition of the mode are those of the test",
+                    "test {}: the model hardly reproduces the observed mode ({name}, with {:.0} % of the weight): \
+                     check that motion, geometry and the definition of the mode match the test",
                     at + 1,
                     100.0 * share
                 ));

@@ -145,7 +145,7 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<DropResult, C
     }
     if from.len() < 2 {
         return Err(table
-            .unsuited("one drop does not show the scatter: at least two are needed")
+            .unsuited("the scatter cannot be computed from one drop: at least two drops are needed")
             .into());
     }
     let shown: Vec<f64> = from.iter().zip(&to).map(|(from, to)| (to / from).sqrt()).collect();
@@ -312,7 +312,7 @@ fn gravity_warning(striker: &Striker, log_ratio: f64, speed: f64) -> Option<Stri
     (shown < 0.9 * ideal).then(|| {
         format!(
             "gravity reduces the rebound of the slowest impact ({1} m/s) by {0:.0} %, so c depends strongly on \
-             the given k: drop from higher, or leave out the last bounces",
+             the given k: drop the mass from a greater height, or leave out the last bounces",
             100.0 * (1.0 - shown / ideal),
             short(speed)
         )

@@ -44,7 +44,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     };
     if rest.len() < 2 {
         return Err(table
-            .unsuited("one row does not show the scatter: repeat the test at least once")
+            .unsuited("the scatter cannot be computed from one row: repeat the test at least once")
             .into());
     }
     let coefficient = |name: &str, values: &[f64]| {

@@ -26,8 +26,8 @@ const SHARE: f64 = 0.05;
 /// scatter of the channels.
 const FIRST_SHARE: f64 = 0.2;
 
-/// Residuals of a channel are attributed to rounding errors if their root mean square, divided by that of the recorded
-/// values, is below this.
+/// Residuals of a channel are attributed to rounding errors if the ratio of their root mean square to the root mean
+/// square of the recorded values is below this value.
 const ROUNDING: f64 = 1e-9;
 
 /// Correlation above which two parameters are reported as inseparable.
@@ -273,8 +273,8 @@ fn identifiability(
     warnings.extend(inseparable(estimates, correlation, ALIKE));
     if condition > ILL {
         warnings.push(format!(
-            "the parameters together are ill determined (condition number {}): fit fewer of them, or \
-             record more channels",
+            "the record does not determine all fitted parameters together (condition number {}): fit fewer of them, \
+             or record more channels",
             short(condition)
         ));
     }

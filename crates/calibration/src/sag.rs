@@ -34,7 +34,7 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
     };
     if load.len() < 2 {
         return Err(table
-            .unsuited("one row does not show the scatter: repeat the test at least once")
+            .unsuited("the scatter cannot be computed from one row: repeat the test at least once")
             .into());
     }
     // Vertical force (N) that gives the same sag on a single seat whose normal is vertical.

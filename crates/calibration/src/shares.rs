@@ -392,8 +392,8 @@ impl Weighed {
         let pairs = statements.iter().zip(&self.likelihoods);
         pairs.filter(|(_, likelihood)| **likelihood < UNLIKELY).map(|(one, likelihood)| {
             format!(
-                "the model hardly agrees with the statement {} within the range (mean likelihood {}): check that motion, \
-                 heights and racks of the scenario are those of the statement, or widen the range",
+                "the model hardly agrees with the statement {} within the range (mean likelihood {}): check that \
+                 motion, heights and racks of the scenario match the statement, or widen the range",
                 one.id,
                 short(*likelihood)
             )

@@ -62,7 +62,7 @@ pub fn stiffness(
     let outside = force.iter().filter(|force| **force <= 0.0).count();
     if outside > 0 {
         warnings.push(format!(
-            "{outside} of {} rows have no force: remove the rows measured before the surfaces touch, since they \
+            "{outside} of {} rows have no force: remove the rows measured before the surfaces touch, because they \
              lower k",
             force.len()
         ));
@@ -71,14 +71,16 @@ pub fn stiffness(
         && difference > CLEARLY
     {
         warnings.push(format!(
-            "the force grows as penetration to the power 1.5 rather than proportionally (the information \
+            "the force is proportional to penetration to the power 1.5 rather than to penetration (the information \
              criterion is lower by {difference:.0}): the straight line is valid between the measured loads only; \
              law = \"hertz\" with stiffness = {} fits better",
             quoted(hertz / f64::from(nodes), Dimension::HERTZ_STIFFNESS)
         ));
     }
     if half > slope {
-        warnings.push("the interval of k reaches zero: press further or measure more rows".into());
+        warnings.push(
+            "the interval of k reaches zero: apply higher loads, or measure more rows".into(),
+        );
     }
     let scatter = (found.squares / found.freedom as f64).sqrt();
     let facts = vec![
@@ -123,7 +125,7 @@ fn picture(penetration: &[f64], force: &[f64], slope: f64, offset: f64) -> Figur
 }
 
 /// Returns `k` (N/m^1.5) of Hertz's law `F = k (δ − δ₀)^1.5`, and the amount by which the information
-/// criterion (Akaike 1974) of this law is lower than that of the straight line. Both laws have two
+/// criterion (Akaike 1974) of this law is lower than the criterion of the straight line. Both laws have two
 /// parameters.
 ///
 /// For a given δ₀ the best `k` is a ratio of sums, so only δ₀ is searched. The first grid extends to either

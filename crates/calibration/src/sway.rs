@@ -33,14 +33,14 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     let refuse = |reason: &str| CalibrateError::Scenario(reason.to_owned());
     let stack = scenario.stack().filter(|_| !scenario.is_spatial()).ok_or_else(|| {
         refuse(
-            "a tap test needs a stack in the one plane in which it swayed: set stack.view to \"transverse\" or \
+            "a tap test needs a planar stack, in the plane in which it swayed: set stack.view to \"transverse\" or \
              \"longitudinal\"",
         )
     })?;
     if stack.across().is_some() {
         return Err(refuse(
-            "stack.view = \"both\" has two planes, and a tap test needs the one in which the stack swayed: set stack.view to \
-             \"transverse\" or \"longitudinal\"",
+            "a tap test needs the one plane in which the stack swayed, but stack.view = \"both\" has two planes: set \
+             stack.view to \"transverse\" or \"longitudinal\"",
         ));
     }
     let seats = [
@@ -62,7 +62,7 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     let periods = table.required("period", Dimension::TIME)?;
     if periods.len() < 2 {
         return Err(table
-            .unsuited("one row does not show the scatter: repeat the test at least once")
+            .unsuited("the scatter cannot be computed from one row: repeat the test at least once")
             .into());
     }
     let (period, half) = mean(&periods);
@@ -70,7 +70,7 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     let outside = || {
         table.unsuited(
             "no stiffness within a factor of 1000 of that in the scenario gives this period: check that the scenario is the stack \
-             that was tapped, in the plane in which it swayed, and that each period is a whole cycle",
+             that was tapped, in the plane in which it swayed, and that each period is that of a whole cycle",
         )
     };
     let of = |factor: f64| factor * own[0];
@@ -153,7 +153,7 @@ fn stiffness(law: &Interface) -> Option<f64> {
     (law.basis != Basis::Length).then_some(stiffness)
 }
 
-/// Returns "seat" or "node", whichever the constants of a contact law apply to.
+/// Returns the basis of the constants of a contact law, "seat" or "node".
 fn basis(law: &Interface) -> &'static str {
     if law.basis == Basis::Seat { "seat" } else { "node" }
 }

@@ -66,7 +66,7 @@ pub struct Request {
 pub struct Decision {
     /// Cases with a verdict.
     pub cases: Cases,
-    /// Fragility curve of each limit state against the intensity measure of the study. The first curve is that of
+    /// Fragility curve of each limit state against the intensity measure of the study. The first curve is for
     /// collapse: at least one barrel or rack loses its seat.
     pub curves: Vec<LimitCurve>,
     /// Cumulative incidence of each collapse mode against the intensity measure of the study, the most
@@ -206,8 +206,8 @@ impl Gathering {
 /// Random resampling starts from the seed of the study, so that the same study always gives the same page.
 ///
 /// # Errors
-/// If the table is not that of a study, no case has a verdict, or the hazard curve is for an intensity
-/// measure other than that of the study.
+/// If the table is not the table of a study, no case has a verdict, or the hazard curve is for an intensity measure
+/// other than that of the study.
 pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, DecisionError> {
     let mut gathering = Gathering::new(&collected.provenance)?;
     gathering.add(&collected.table)?;

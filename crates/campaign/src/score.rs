@@ -228,7 +228,8 @@ impl Sheet {
 pub enum ScoreError {
     /// The scenario is a free scene, which has no racks.
     #[error(
-        "\"{0}\" is a free scene, but a RockScore is for racks and devices: use the scenario of a stack"
+        "\"{0}\" is a free scene, but a RockScore is computed for a stack of barrels on racks: use the scenario of a \
+         stack"
     )]
     NoStack(String),
     /// A state cannot be applied to the stack.

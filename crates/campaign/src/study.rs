@@ -8,9 +8,9 @@
 //!
 //! A study is a deterministic list of chunks of cases, and each chunk is run as a whole. The rows of a chunk
 //! are stored in a file, the shard. A shard gets its final name only when it is complete and on the disk, so
-//! that every shard stands for a finished chunk. An interrupted study resumes from its shards, on one machine
-//! or on many. Random draws for a case depend on the seed of the study and on the identity of the case, not
-//! on the number of cases.
+//! that every shard represents a finished chunk. An interrupted study resumes from its shards, on one machine or on
+//! many. Random draws for a case depend on the seed of the study and on the identity of the case, not on the number of
+//! cases.
 //!
 //! ```no_run
 //! use std::ops::ControlFlow;

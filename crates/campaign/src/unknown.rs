@@ -56,8 +56,8 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
             true
         };
         let friction = "friction.coefficient";
-        // Static friction takes the same value, so that it does not fall below kinetic friction. The friction of fallen
-        // bodies takes it too, since their materials are the same.
+        // Static friction has the same value, so that it is not below kinetic friction. The friction of fallen bodies
+        // also has this value, since their materials are the same.
         let others = [
             Some(path("friction.static_coefficient")),
             fallen.map(|fallen| format!("interface.{fallen}.{friction}")),

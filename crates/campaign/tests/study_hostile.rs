@@ -108,7 +108,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     (
         2,
         "[[factor]]\nfield = \"interface.rack-ground.friction.coefficient\"\nrange = { from = 0.0, to = 0.5, count = 3, spacing = \"log\" } # HERE\n",
-        &["needs both ends above zero"],
+        &["`from` and `to` must be above zero"],
     ),
     (
         2,
@@ -149,7 +149,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
         2,
         "[[motion]]\nsynthetic = { kind = \"boore\", count = 3, magnitude = 6, distance = \"8 km\" }\n\
          scale = { measure = \"sa(1.0)\", value = \"0.3 g\", of = \"rotd50\" } # HERE\n",
-        &["of both horizontal components needs a recorded motion"],
+        &["can refer to both horizontal components only for a recorded motion"],
     ),
     (
         2,
@@ -182,7 +182,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
         2,
         "[[motion]]\nsynthetic = { kind = \"clough-penzien\", count = 2 }\n\
          scale = { measure = \"pgv\", value = \"1 m/s\", of = \"rotd50\" } # HERE\n",
-        &["of both horizontal components needs a recorded motion"],
+        &["can refer to both horizontal components only for a recorded motion"],
     ),
     (
         2,

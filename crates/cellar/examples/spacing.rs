@@ -76,16 +76,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "Two rows of five stacks of the built-in scenario `demo-napa` (ten barrels on five levels, two-barrel racks) \
          are computed in three dimensions, without walls, under all three components of the record of Napa College \
          2014. The distance between neighboring stacks is the same within a row and between the rows. Each spacing \
-         is computed with {variants} variants, in which every stack has imperfections of its own, and all stacks share \
-         the unknown constants. A stack is knocked over if a body of another stack touched it before its first loss \
-         of seat. Shares are those of all stacks; their 95 % intervals are computed from the scatter between the \
-         variants, since the stacks of a room share their constants and their motion.\n"
+         is computed with {variants} variants. In a variant, every stack has its own imperfections, and all stacks \
+         share the unknown constants. A stack counts as knocked over if a body of another stack touched it before its \
+         first loss of seat. Shares are fractions of all stacks; their 95 % intervals are computed from the scatter \
+         between the variants, since the stacks of a room share their constants and their motion.\n"
     );
     println!(
         "`cargo run --release -p barrelstack-cellar --example spacing -- {variants}` computes this page.\n"
     );
     println!(
-        "| spacing | fall by themselves | knocked over | fall in all | stacks fallen for each that falls by itself | barrels fallen |"
+        "| spacing | fall by themselves | knocked over | fall in total | fallen stacks per stack that falls by \
+         itself | barrels fallen (median) |"
     );
     println!("|---|---|---|---|---|---|");
     let mut in_all = Vec::new();

@@ -237,7 +237,7 @@ fn headline(summary: &AftershockSummary) -> String {
         let survive = if some == "1" { "survives" } else { "survive" };
         match at {
             0 => format!("{some} {survive} an aftershock of {}", strength(summary, one.factor)),
-            _ => format!("{some} {survive} one of {} times", one.factor),
+            _ => format!("{some} {survive} one of {} times the strength", one.factor),
         }
     };
     let clauses = listed(summary.aftershocks.iter().enumerate().map(clause));
@@ -332,7 +332,8 @@ pub fn tables(summary: &AftershockSummary) -> [Table; 2] {
     let stacks = Table::of(
         "Stacks in the order in which to inspect them. Shares are given with their 95 % intervals: the share of all \
          variants in which a stack stands after the main shock, and the share of these variants in which it falls \
-         under an aftershock. Movement is the median over these variants in the main shock.",
+         under an aftershock. Movement in the main shock is the median over the variants in which the stack stands \
+         after it.",
         summary.inspection.iter().cloned(),
         &columns,
     );

@@ -272,8 +272,9 @@ pub fn compared(
 }
 
 impl CellarComparison {
-    /// Returns the layouts in the order of the tables: sorted by the share of barrels that fall, followed by those
-    /// without a valid variant. Each comes with its comparison to the first layout; `None` for the first layout itself.
+    /// Returns the layouts in the order of the tables: sorted by the share of barrels that fall, followed by the
+    /// layouts without a valid variant. Each layout is paired with its comparison to the first layout; `None` for the
+    /// first layout itself.
     pub fn ranked(&self) -> Vec<(&LayoutAnswer, Option<&LayoutPair>)> {
         let rank = |one: &LayoutAnswer| self.order.iter().position(|name| *name == one.name);
         let mut all: Vec<_> = self.layouts.iter().enumerate().collect();

@@ -79,15 +79,15 @@ impl Kept {
             return Err(failure(
                 &path,
                 &format!(
-                    "it was written by version {} ({}), not by {} ({})",
+                    "it was written by version {} ({}), not by this version, {} ({})",
                     file.version, file.schema, own.1, own.0
                 ),
             ));
         }
         if file.cellar_hash != self.cellar_hash {
             let message = format!(
-                "it belongs to the cellar {}, and this cellar is {}: the file, the changes or the number of \
-                 variants differ",
+                "it belongs to the cellar {}, but this cellar is {}: the scenario file, the changes of its values or \
+                 the number of variants differ",
                 file.cellar_hash, self.cellar_hash
             );
             return Err(failure(&path, &message));

@@ -1,4 +1,4 @@
-//! Rooms: many stacks, walls and columns on one ground, and what knocks over what.
+//! Rooms: many stacks, walls and columns on one ground, and the collapses that spread from stack to stack.
 //!
 //! ```text
 //! Room { stacks, obstacles, ground } ─ run ─▶ islands: one for each stack, advanced in parallel
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Coordinates of a room: `x` and `y` horizontal, `z` up from the floor. Poses in results are relative to the ground,
-//! so they are those that a person in the room sees.
+//! as for an observer who stands in the room.
 
 // Results are bit-identical on every machine, so the transcendental functions of the platform are disallowed
 // (`clippy.toml`).

@@ -16,7 +16,7 @@ use crate::words::plural;
 /// Depth (m) of the floor in front of a door that must stay free, so that a person can enter.
 const ENTRY: f64 = PASSAGE;
 
-/// Depth (m) of the rectangles that stand for doors in a drawing.
+/// Depth (m) of the rectangles that represent doors in a drawing.
 const LEAF: f64 = 0.12;
 
 /// Geometry and contents of a stack, shared by all stacks that have the same number of levels.
@@ -310,7 +310,7 @@ impl PlanSummary {
         }
         if !self.as_built {
             all.push(
-                "Bodies start from stated places; the plan shows the stacks as built.".to_owned(),
+                "Bodies start from the places that the input states; the plan shows the stacks as built.".to_owned(),
             );
         }
         all

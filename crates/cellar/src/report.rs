@@ -101,7 +101,7 @@ fn players(answer: &Answer) -> Option<Block> {
             if summary.shocks.is_empty() {
                 ""
             } else {
-                " They continue through the sequence, without the quiet time between the shocks."
+                " They run on through the whole sequence and leave out the quiet time between the shocks."
             }
         ),
         panes: vec![
@@ -356,8 +356,8 @@ pub fn stacks(summary: &CellarSummary) -> Table {
 
 fn rows(summary: &CellarSummary) -> Table {
     Table::of(
-        "For each row: share of the variants in which the first stack to fall is in this row, and mean numbers of its \
-         stacks that fall by themselves and that are knocked over.",
+        "For each row: share of the variants in which the first stack to fall is in this row, and mean numbers of \
+         stacks of this row that fall by themselves and that are knocked over.",
         &summary.rows,
         &[
             ("row", "", &|row| Cell::text(row.row.to_string())),

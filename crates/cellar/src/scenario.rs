@@ -567,8 +567,8 @@ impl Cellar {
                 total += each * u64::from(block.stacks);
                 if total > MOST_BARRELS {
                     let message = format!(
-                        "with row {} of this block the cellar has more than {MOST_BARRELS} barrels, more than a run \
-                         holds in memory: take fewer rows or stacks, or split the cellar into rooms",
+                        "with row {} of this block the cellar has more than {MOST_BARRELS} barrels, the maximum that \
+                         fits into memory: take fewer rows or stacks, or split the cellar into rooms",
                         row + 1
                     );
                     return Err(reader.inconsistent("rows", message));

@@ -27,8 +27,8 @@ pub(crate) fn can_continue(run: &RoomRun) -> bool {
     !run.interrupted && run.stacks.iter().all(valid)
 }
 
-/// Returns the runs of the first shock and of the later ones as one run. Its clock continues from shock to shock
-/// without the quiet time between them: every shock starts when the one before ends.
+/// Returns the runs of the first shock and of the later ones as one run. The clock of this run continues from shock to
+/// shock without the quiet time between them: every shock starts when the previous one ends.
 pub(crate) fn joined(first: RoomRun, later: Vec<RoomRun>) -> RoomRun {
     let mut all = first.clone();
     let mut shocks = vec![first];

@@ -56,7 +56,7 @@ table! {
 pub struct StartSpec {
     /// File of shifts or poses.
     pub file: Option<FileRef>,
-    /// Shifts, applied after those of the file.
+    /// Shifts, applied after the shifts or poses of the file.
     pub shifts: Vec<ShiftSpec>,
 }
 
@@ -86,7 +86,8 @@ impl StartSpec {
         let shifts = reader.sections("shift")?;
         if shifts.len() > MOST_SHIFTS {
             let message = format!(
-                "there are {} shifts; a cellar has at most {MOST_SHIFTS}: state more in a file",
+                "there are {} tables of shifts, but a scenario may have at most {MOST_SHIFTS}: write more shifts to a \
+                 file",
                 shifts.len()
             );
             return Err(reader.inconsistent("shift", message));
@@ -303,7 +304,8 @@ fn of_file(
     let lines = (1..).zip(text.trim_start_matches('\u{feff}').lines());
     let mut lines = lines.filter(|(_, line)| !line.trim().is_empty());
     let Some((first, header)) = lines.next() else {
-        let message = "the file is empty: its first line names the columns `stack`, `body` and those of shifts or poses";
+        let message = "the file is empty: its first line must name the columns `stack` and `body`, and the columns of \
+                       the shifts or poses";
         return Err((1, message.to_owned()));
     };
     let columns = Columns::of(header).map_err(|message| (first, message))?;
@@ -326,7 +328,8 @@ fn of_file(
             let of = row.text("body");
             let of = if of.is_empty() { String::new() } else { format!("body \"{of}\" of ") };
             let message = format!(
-                "a second row of {of}stack \"{name}\", after the row in line {before}: state the sum of both in one row"
+                "a second row for {of}stack \"{name}\", after the row in line {before}: state the sum of both in one \
+                 row"
             );
             return Err((line, message));
         }

@@ -187,7 +187,7 @@ fn a_surveyed_room_starts_from_its_displacements() {
         Err(CellarFailure::Plan(error)) => assert_eq!(error.sentence(), said),
         other => panic!("{other:?}"),
     }
-    assert!(prepared.plan.summary.sentences().concat().contains("start from stated places"));
+    assert!(prepared.plan.summary.sentences().concat().contains("start from the places"));
     for (text, place, words) in [
         ("[[start.shift]]\nstack = \"3-1\"\n", "mine.toml:8:", "there is no stack \"3-1\""),
         (

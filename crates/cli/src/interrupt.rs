@@ -83,10 +83,9 @@ pub(crate) fn stop_at(point: Option<StopPoint>) {
 
 /// Installs the signal handler of the program; `json` is `true` if the command prints a JSON document.
 ///
-/// The first signal requests a stop. Work that does not listen, or does not react in time, is
-/// terminated; work that stops gets time to keep its finished results. A second signal terminates
-/// at once. Files are given their final names only when they are complete, and unfinished files are
-/// removed.
+/// The first signal requests a stop. Work that does not poll for the request, or does not stop in time, is terminated;
+/// work that stops has time to keep its finished results. A second signal terminates at once. Files are given their
+/// final names only when they are complete, and unfinished files are removed.
 pub(crate) fn watch(json: bool) {
     JSON.store(json, Ordering::Relaxed);
     // An error means that the system refuses the handler; Ctrl-C then terminates the program as usual.

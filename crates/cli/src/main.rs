@@ -66,14 +66,13 @@ fn main() -> ExitCode {
         }
         Err(error) => {
             printer::error(&error, json);
-            // The status is that of a mistyped option, so that scripts can distinguish errors from
-            // a verdict.
+            // The status is the same as for a mistyped option, so that scripts can distinguish errors from a verdict.
             ExitCode::from(2)
         }
     }
 }
 
-/// Replaces what the standard library says about text that is not a number.
+/// Replaces the message of the standard library about text that is not a number.
 fn in_plain_words(message: &str) -> String {
     const WORDS: [(&str, &str); 4] = [
         (": invalid float literal", ": expected a number"),

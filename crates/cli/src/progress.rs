@@ -23,8 +23,8 @@ const LOOKED_AT: Duration = Duration::from_secs(1);
 /// share is required.
 const SHARE: f64 = 0.02;
 
-/// Number of runs that must be finished before the time of the other runs is predicted; half of all runs is enough if
-/// that is fewer.
+/// Number of runs that must be finished before the time of the other runs is predicted, or half of all runs if that
+/// number is smaller.
 const ENOUGH: f64 = 24.0;
 
 /// Shortest total time for which an estimate is printed.
@@ -126,7 +126,8 @@ impl Progress {
         })
     }
 
-    /// Shows the text that `words` returns, of work whose length is unknown; `done` of `things` are finished.
+    /// Shows the text that `words` returns about work of unknown length; `done` is the number of `things` that are
+    /// finished.
     fn report_open_ended(
         &self,
         done: u64,

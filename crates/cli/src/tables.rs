@@ -90,7 +90,7 @@ pub(crate) fn write_one(path: &Path, csv: &str) -> anyhow::Result<()> {
     if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("xlsx")) {
         return store(path, csv.as_bytes());
     }
-    // The name "provenance" is that of the other sheet, so the table gets another name.
+    // The other sheet has the name "provenance", so the table needs a different name.
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = if stem.eq_ignore_ascii_case("provenance") { "table".into() } else { stem };
     let about = spreadsheet::provenance(&facts(), &[]);

@@ -29,7 +29,7 @@ macro_rules! typed {
 
 pub(crate) use typed;
 
-/// Returns the word that stands for an enum variant on the command line.
+/// Returns the word for an enum variant on the command line.
 pub(crate) fn word(member: impl ValueEnum + Copy) -> String {
     member.to_possible_value().map_or_else(String::new, |word| word.get_name().to_owned())
 }

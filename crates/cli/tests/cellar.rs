@@ -206,7 +206,7 @@ fn a_state_that_was_changed_by_hand_is_refused_at_its_line() {
         ("stack,dx (m)\n1-1,inf\n", "expected a number"),
         (
             "stack,dx (m)\n1-1,0.1\n1-1,0.1\n",
-            "survey.csv:3: a second row of stack \"1-1\", after the row in line 2",
+            "survey.csv:3: a second row for stack \"1-1\", after the row in line 2",
         ),
         ("stack,dx (m)\n\n9-1,0.1\n", "survey.csv:3: column \"stack\": there is no stack \"9-1\""),
         (

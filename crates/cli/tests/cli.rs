@@ -142,8 +142,8 @@ fn a_former_key_gives_the_same_run_with_a_warning() {
     };
     let (former, present) = (with("imperfections.kind=hair"), with("unknowns.drawn=false"));
     let (mut former, present) = (json(&stdout(&former)), json(&stdout(&present)));
-    let warning = "override `imperfections.kind=hair`: `imperfections.kind` is a former name, which a later version \
-                   will refuse: write `unknowns.drawn = false` instead";
+    let warning = "override `imperfections.kind=hair`: `imperfections.kind` is an old name, and a later version will \
+    reject it: write `unknowns.drawn = false` instead";
     assert_eq!(former["warnings"].as_array_mut().unwrap().remove(0), warning);
     for key in ["warnings", "ensemble", "outcome", "bodies"] {
         assert!(!present[key].is_null(), "{key}");
@@ -310,7 +310,8 @@ fn a_stack_that_stands_and_a_run_cut_short_say_so() {
         "--set=run.duration=1 s",
     ]);
     assert_eq!(output.status.code(), Some(0));
-    let stands = "  Shaken along the barrels, the stack stands until 1.0 s, where the run ends, 34.0 s before the motion does.\n";
+    let stands = "  Shaken along the barrels, the stack stands until the run ends at 1.0 s, 34.0 s before the end of \
+                  the motion.\n";
     assert!(stdout(&output).contains(stands), "{}", stdout(&output));
     let warning = stderr(&output);
     assert!(
@@ -370,7 +371,7 @@ fn variants_are_listed_counted_and_shown_by_their_number() {
     let text = stdout(&barrelstack(SHORT));
     let headline = "  Falls. Shaken across the barrels, all 4 variants fall (95 % confidence: at least 51 %). The \
                     first seat is lost between ";
-    assert!(text.contains("; no barrel falls within 0.1 s of that.\n"), "{text}");
+    assert!(text.contains("; no barrel falls within 0.1 s of that loss.\n"), "{text}");
     assert!(text.contains(headline), "{text}");
     assert!(text.contains("variants                4 of 4 collapse, 95 % interval "), "{text}");
     let summary = |more: &[&str]| {
@@ -493,7 +494,7 @@ fn the_demo_writes_its_report_and_may_be_repeated() {
         let report = Path::new("barrelstack-demo").join("report.html");
         let said = stdout(&output);
         assert!(
-            said.starts_with("Not decided, because the runs end at 1.0 s, before the motion does.")
+            said.starts_with("Not decided, because the runs end at 1.0 s, before the motion ends.")
         );
         // The demo is three-dimensional unless a view is given.
         assert!(

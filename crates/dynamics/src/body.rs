@@ -130,7 +130,7 @@ impl<S: Space> Nodes<S> {
 pub struct Body<S: Space> {
     /// Name in messages and results; unique in a model.
     pub name: String,
-    /// Whether the body moves under forces or with the ground.
+    /// Source of the motion: forces or the ground.
     pub motion: Motion,
     /// Mass (kg).
     pub mass: S::Real,

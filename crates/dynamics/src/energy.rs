@@ -34,8 +34,9 @@ pub struct EnergySummary {
     /// for an exact integration.
     pub residual: f64,
     /// Energy that has passed through the system so far: the absolute work of the ground and of external forces, plus
-    /// the energy available at the start. The latter is the sum of the kinetic energy, the energy of springs, and the
-    /// potential energy relative to its lowest value so far. The residual is stated as a fraction of the throughput.
+    /// the energy available at the start. This available energy is the sum of the kinetic energy, the energy of
+    /// springs, and the potential energy relative to its lowest value so far. The residual is stated as a fraction of
+    /// the throughput.
     pub throughput: f64,
 }
 

@@ -1,10 +1,10 @@
 //! The scalar type of the simulation: one `f64`, or many that advance in lockstep.
 //!
-//! Every force, shape and integrator is written once, generic over [`Real`]. With `f64` it computes one run; with a
-//! bundle of lanes it computes as many runs of one topology side by side. The results of a lane must be bit-identical
-//! to those of a single run. So a branch on a number becomes a [`Mask`] and a [`Real::select`], a block may be skipped
-//! only if no lane needs it, and the operations on `f64` and on bundles must not differ (no fused multiply-add, and no
-//! `sin` from the platform's math library).
+//! Every force, shape and integrator is written once, generic over [`Real`]. With `f64`, it computes one run; with a
+//! bundle of lanes, it computes one run per lane, all of the same topology, side by side. The results of a lane must
+//! be bit-identical to those of a single run. So a branch on a number becomes a [`Mask`] and a [`Real::select`], a
+//! block may be skipped only if no lane needs it, and the operations on `f64` and on bundles must not differ (no fused
+//! multiply-add, and no `sin` from the platform's math library).
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};

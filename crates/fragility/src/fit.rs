@@ -71,14 +71,13 @@ pub enum FitError {
     },
     /// Failure does not become likelier as intensity increases.
     #[error(
-        "failure does not become likelier with intensity, so no fragility curve describes the \
-         cases; look at the raw fractions, and try another intensity measure"
+        "the chance of failure does not increase with intensity, so no fragility curve describes the cases; look at \
+         the raw fractions, and try another intensity measure"
     )]
     NotIncreasing,
     /// The iteration did not converge.
     #[error(
-        "the fit did not converge, which does not happen with intensities of usual magnitude; check for intensities \
-         that differ by many orders of magnitude"
+        "the fit did not converge; check whether the intensities differ by many orders of magnitude"
     )]
     NotConverged,
     /// Too few resampled data sets determine a curve.
@@ -140,7 +139,7 @@ fn around(value: f64, error: f64, level: f64) -> Interval {
 /// Fits a lognormal curve to evidence by maximum likelihood.
 ///
 /// The likelihood of an observation is the probability (or, for an exact capacity, the density) of its capacity. For
-/// failure counts the fit is that of Baker (2015). For `n` exact capacities, `ln θ` and `β²` are the mean and the
+/// failure counts, the fit follows Baker (2015). For `n` exact capacities, `ln θ` and `β²` are the mean and the
 /// variance of the logarithms of the capacities. This variance is the sum of the squared deviations divided by `n`,
 /// whereas [`moments`] divides by `n − 1`. Standard errors follow from the observed information matrix and assume
 /// independent cases.

@@ -5,8 +5,8 @@ use crate::math::quantile;
 /// IDA curve of one record: results of runs at ascending intensities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ida {
-    /// Pairs `(intensity, demand)` of the runs, in ascending order of intensity. An infinite demand stands
-    /// for collapse.
+    /// Pairs `(intensity, demand)` of the runs, in ascending order of intensity. An infinite demand represents
+    /// collapse.
     points: Vec<(f64, f64)>,
 }
 
@@ -28,8 +28,8 @@ impl Ida {
         Self { points }
     }
 
-    /// Returns the pairs `(intensity, demand)` of the runs, in ascending order of intensity. An infinite demand stands
-    /// for collapse.
+    /// Returns the pairs `(intensity, demand)` of the runs, in ascending order of intensity. An infinite demand
+    /// represents collapse.
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points
     }
@@ -38,10 +38,10 @@ impl Ida {
     ///
     /// The demand is interpolated linearly between runs, and from zero at zero intensity to the first run. Between a
     /// run in which the structure stood and a run in which it collapsed, in either order, the boundary is placed at the
-    /// geometric mean of the two intensities. On one side of the boundary the demand is that of the standing run, and
-    /// on the other side it is infinite. Above the last run, the demand is infinite if the structure collapsed in that
-    /// run, because an analysis usually ends at the collapse. It is `None` (unknown) if the structure stood in that
-    /// run.
+    /// geometric mean of the two intensities. On one side of the boundary the demand equals the demand of the standing
+    /// run, and on the other side it is infinite. Above the last run, the demand is infinite if the structure
+    /// collapsed in that run, because an analysis usually ends at the collapse. The demand is `None` (unknown) if the
+    /// structure stood in that run.
     pub fn demand(&self, intensity: f64) -> Option<f64> {
         let after = self.points.partition_point(|(x, _)| *x < intensity);
         let before = after.checked_sub(1).map_or((0.0, 0.0), |i| self.points[i]);

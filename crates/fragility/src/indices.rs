@@ -25,7 +25,8 @@ pub struct Index {
 /// Computes the first-order and the total index of every input from blocks of results
 /// `[f(A), f(B), f(A₁B), f(A₂B), …]`.
 ///
-/// In each block, `A` and `B` are two samples of all inputs, and `AᵢB` is `A` with input `i` replaced by that of `B`.
+/// In each block, `A` and `B` are two samples of all inputs, and `AᵢB` is `A` with input `i` replaced by input `i` of
+/// `B`.
 ///
 /// ```text
 /// first  = mean(f(B) (f(AᵢB) − f(A))) / V        Saltelli et al. 2010, table 2 (b)

@@ -26,7 +26,7 @@ pub struct Measured {
 ///
 /// `cases` holds pairs `(intensity, failed)`, and `second` holds another quantity of each case, such as
 /// another measure or the duration. Sufficiency is tested by a likelihood ratio: a probit regression on the
-/// logarithms of both quantities is compared with that on the measure alone. The test assumes independent
+/// logarithms of both quantities is compared with a regression on the measure alone. The test assumes independent
 /// cases.
 ///
 /// # Errors

@@ -165,9 +165,9 @@ pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
 /// Returns the confidence interval of the mean of paired differences; `None` for fewer than two differences.
 ///
 /// `differences` holds one difference for each group, between `-most` and `most`. The interval is based on Student's t
-/// distribution. It is widened like that of [`grouped_mean`], since a few differences may agree by chance. `tries` is
-/// the number of such intervals from which one is selected. The level applies to all of them together (Bonferroni), so
-/// that the best of many differences is not overrated.
+/// distribution. It is widened like the interval of [`grouped_mean`], since a few differences may agree by chance.
+/// `tries` is the number of such intervals from which one is selected. The level applies to all of them together
+/// (Bonferroni), so that the best of many differences is not overrated.
 pub fn mean_difference(
     differences: &[f64],
     most: f64,

@@ -88,7 +88,8 @@ pub struct Influence {
     /// It includes the interactions of this constant with the others.
     pub total: f64,
     /// Width of the credible interval of the share if this constant is known exactly and all other constants are
-    /// unknown. The width depends on the value of this constant; this is its mean over these values.
+    /// unknown. The width depends on the value of this constant; this field is the mean of the width over these
+    /// values.
     pub width_if_known: f64,
 }
 
@@ -249,7 +250,7 @@ pub enum Shape {
 /// `bₓ` is the departure of the share at the intensity `x` from the lognormal curve; it is 0 for [`Shape::Lognormal`].
 /// In the regression, the runs under one motion have a common coefficient, so that they do not count as independent.
 /// `σ` is the standard deviation of these coefficients. The effects of the constants are the same at all intensities.
-/// The method is that of [`conditional`].
+/// The method is the same as in [`conditional`].
 #[derive(Clone, Debug)]
 pub struct Intensities {
     /// For each sample, the coefficients `b₀`, `b₁`, `bₓ` (one for each of `levels`), `aⱼ` and `cᵢⱼ`, and finally `σ`.

@@ -106,7 +106,7 @@ fn is_plain(kind: Kind) -> bool {
     matches!(kind, Kind::Number(_))
 }
 
-/// An optional value. `None` stands for an absent field, or for the word that the field accepts ([`Kind::WordOr`]).
+/// An optional value. `None` represents an absent field, or the word that the field accepts ([`Kind::WordOr`]).
 impl<T: Held> Held for Option<T> {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         T::read_optional(reader, name)

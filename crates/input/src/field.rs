@@ -110,7 +110,7 @@ pub enum Kind {
     Value,
     /// A list of values that are neither lists nor tables, and whose kind depends on another field.
     Values,
-    /// One of a list of names, or a table. A name stands for a table with a single field. The string in this variant
+    /// One of a list of names, or a table. A name is short for a table with a single field: the string in this variant
     /// is the key of that field, and the name is its value.
     ChoiceOrTable(fn() -> Vec<&'static str>, &'static str, &'static Section),
 }

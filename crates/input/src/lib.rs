@@ -9,7 +9,7 @@
 //! - the [JSON Schema](schema) for editors;
 //! - the [`reference`](mod@reference) in Markdown.
 //!
-//! This crate does not know what the fields stand for; their interpretation is up to the caller.
+//! This crate does not interpret the fields; the caller does.
 
 // Results must be bit-identical on every machine, and so must the input numbers (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -80,7 +80,7 @@ const UNITS: &[(&str, u128, u128, i32, i32, Dimension)] = &[
     ("pcf", 45_359_237, 28_316_846_592, 4, 0, Dimension::DENSITY),
 ];
 
-/// Alternative spellings with a single meaning, and the unit they stand for.
+/// Alternative spellings with a single meaning, each with the unit that it denotes.
 const ALIASES: &[(&str, &str)] = &[
     ("lbs", "lb"),
     ("lbm", "lb"),
@@ -227,12 +227,12 @@ fn tokenize(text: &str) -> Result<Vec<Token>, UnitError> {
             ',' => return Err(UnitError::Malformed("write the decimal mark as a point")),
             _ if c.is_ascii_digit() || c == '.' || c == '-' || c == '+' => {
                 return Err(UnitError::Malformed(
-                    "a second number stands where a unit was expected; powers are written `m^2`",
+                    "there is a second number where a unit was expected; write a power as `m^2`",
                 ));
             }
             _ => {
                 return Err(UnitError::Malformed(
-                    "a unit holds names, `*`, `/`, `^` and parentheses only",
+                    "a unit may contain only names, `*`, `/`, `^` and parentheses",
                 ));
             }
         }

@@ -94,10 +94,11 @@ impl Record {
             };
             let rest = shifted.map_or_else(String::new, |share| {
                 format!(
-                    ", the rest shifted by {share:.3} of a step (interpolated by a windowed sinc)"
+                    ", and the rest was shifted by {share:.3} of a step (interpolated by a windowed sinc)"
                 )
             });
-            let note = format!("{begins}: {lost} samples outside the common span cut{rest}");
+            let note =
+                format!("{begins}: {lost} samples outside the common time span were cut{rest}");
             self.notes.push(note);
         }
         Ok(())

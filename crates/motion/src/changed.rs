@@ -99,8 +99,8 @@ impl Record {
         })?;
         let horizontal = History::Sampled(channel.sampled()?);
         // Before the match, the motion is multiplied by one factor; for a vertical component, this is the only
-        // change. A vertical component of constant acceleration 1 therefore returns this factor, which is then
-        // applied to all other channels.
+        // change. A vertical component of constant acceleration 1 therefore yields this factor, which is then applied
+        // to all other channels.
         let probe = History::Sampled(Sampled::new(1.0, vec![1.0, 1.0])?);
         let given = GroundMotion::new(channel.name.clone(), horizontal, Some(probe));
         let matched = if nearly {

@@ -17,7 +17,7 @@ impl Record {
     /// Combines several files, with one or more components each, into one record with a common time
     /// base ([`Record::align`]).
     ///
-    /// Repeated channel names get the file name as a prefix.
+    /// Repeated channel names are prefixed with the file name.
     ///
     /// # Errors
     /// If no record is given, the time steps differ, or the files are of different stations,
@@ -78,7 +78,7 @@ impl Record {
             if known < gathered.channels.len() {
                 let whose = if known == 0 { "no file states" } else { "not all files state" };
                 gathered.notes.push(format!(
-                    "{whose} a readable time of its first sample: the files are assumed to be simultaneous"
+                    "{whose} a readable time of its first sample: the first samples are assumed to be simultaneous"
                 ));
             }
             gathered.align()?;
@@ -95,7 +95,7 @@ impl Record {
             if extra > 0 {
                 channel.acceleration.truncate(shortest);
                 self.notes.push(format!(
-                    "{}: the last {extra} samples cut, as the shortest channel ends there",
+                    "{}: the last {extra} samples were cut, because the shortest channel ends there",
                     channel.name
                 ));
             }

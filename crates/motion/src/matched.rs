@@ -62,7 +62,7 @@ impl Matched {
             (MatchMethod::Time, _) => "the time domain",
             (MatchMethod::Frequency, MatchMethod::Frequency) => "the frequency domain",
             (MatchMethod::Frequency, MatchMethod::Time) => {
-                "the frequency domain, because the time domain stalled,"
+                "the frequency domain, because matching in the time domain made no further progress,"
             }
         }
     }

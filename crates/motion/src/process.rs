@@ -325,7 +325,7 @@ impl Residuals {
         };
         let [velocity, displacement] = [self.velocity, self.displacement].map(share);
         let values = format!(
-            "ends with a velocity of {velocity} PGV and a displacement of {displacement} PGD"
+            "ends with a velocity of {velocity} times PGV and a displacement of {displacement} times PGD"
         );
         if self.acceptable() {
             values

@@ -69,7 +69,7 @@ pub(crate) fn match_in_time(
 ) -> Result<Vec<f64>, MotionError> {
     let mut a = start.to_vec();
     let (mut best, mut gained) = (Best::new(&a), 0);
-    // Far from the target, demands on the peaks alone converge fastest.
+    // Far from the target, rounds with demands on the peaks alone converge fastest.
     let alone = 2 * settings.rounds / 3;
     for round in 1..=settings.rounds {
         let watching = round > alone;

@@ -123,7 +123,8 @@ fn where_wavelets_stall_the_frequency_domain_begins_and_says_so() {
     assert!(matched.misfit <= 0.05);
     let step = matched.motion.provenance.last().unwrap();
     assert!(
-        step.contains("the frequency domain, because the time domain stalled, to NCh2745 (zone 2")
+        step.contains("the frequency domain, because matching in the time domain made no further progress, to NCh2745 \
+        (zone 2")
     );
 }
 

@@ -104,7 +104,7 @@ fn applied<S: Listed>(
 ) -> PyResult<Applied<S>> {
     let wrong = |what: &str, parts: &str, found: &[f64]| {
         PyValueError::new_err(format!(
-            "{what} has {parts}; the number of values found is {}",
+            "{what} must have {parts}; the number of values found is {}",
             found.len()
         ))
     };

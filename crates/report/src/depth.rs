@@ -97,7 +97,7 @@ pub struct DepthBody {
     /// Solids of the body; empty for a body that is not drawn.
     pub volumes: Vec<Volume>,
     /// Offsets (m), in the world frame, from the position of the body to its drawn copies: a barrel of a planar model
-    /// stands for several barrels that lie one behind the other and move alike.
+    /// represents several barrels that lie one behind the other and move alike.
     pub rows: Vec<Point3>,
 }
 

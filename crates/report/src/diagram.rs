@@ -29,7 +29,7 @@ pub struct Arrow {
     pub from: Point,
     /// Head (m).
     pub to: Point,
-    /// What the arrow represents; written to the CSV of the figure.
+    /// Meaning of the arrow; written to the CSV of the figure.
     pub meaning: String,
 }
 

@@ -217,7 +217,7 @@ pub enum Block {
     },
     /// Content that is shown on screen and in Markdown; on paper, a sentence refers to the HTML page.
     OnScreen {
-        /// What the content is, such as "Displacements".
+        /// Description of the content, such as "Displacements".
         what: String,
         /// The content.
         blocks: Vec<Block>,

@@ -413,7 +413,7 @@ mod tests {
         }
         assert!(!svg.contains("plan knocked") && !svg.contains("is knocked over"));
         let csv = Figure::new("floor", "The floor.", plan()).to_csv();
-        // Four corners each, one mark, and all cells but the first.
+        // The header, four corners for each of three regions, one mark, and all cells but the first.
         assert_eq!(csv.lines().count(), 1 + 12 + 1 + 31);
     }
 

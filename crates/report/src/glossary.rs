@@ -26,7 +26,8 @@ impl Glossary {
 
     /// Returns `text` as markup, in which the first occurrence of each term in this section is marked.
     ///
-    /// A marked term shows its meaning while the pointer is over it or while it has the focus, even without scripts.
+    /// A marked term shows its meaning while the pointer is over the term or while the term has the focus, even
+    /// without scripts.
     pub(crate) fn marked(&mut self, text: &str) -> String {
         let mut out = String::new();
         let mut rest = text;

@@ -22,7 +22,7 @@ pub const TIME_QUANTUM: f64 = 1.0 / 1_048_576.0;
 /// differences of such numbers are exact in double precision.
 const LIMIT: f64 = (1_u64 << 48) as f64;
 
-/// Maximum number of values in a column that is written as plain numbers although it need not be exact.
+/// Maximum number of values in a column that need not be exact, but is written as plain numbers because it is short.
 const PLAIN: usize = 512;
 
 fn quantize(value: f64, quantum: f64) -> Option<i64> {

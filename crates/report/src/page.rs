@@ -293,7 +293,7 @@ impl Shell<'_> {
         texts.flat_map(|text| language.untranslated(&text)).collect()
     }
 
-    /// Returns the scripts of the player and those of the page.
+    /// Returns the scripts of the player and the scripts of the page.
     fn all_scripts(&self) -> Vec<&str> {
         PLAYER.into_iter().chain(DEPTH).chain(self.scripts.iter().copied()).collect()
     }

@@ -23,7 +23,7 @@ const PARAMETERS: f64 = 0.10;
 const QUESTIONS: [&str; 5] = [
     "eight barrels: the top level leaves first",
     "eight barrels: drift within 4 to 7 %",
-    "six barrels: both upper levels rock off after 8.5 to 12 s",
+    "six barrels: both upper levels fall by rocking after 8.5 to 12 s",
     "along the barrels: the rack of the second level slides off first",
     "along the barrels: this rack slides off after 3 to 6 s",
 ];
@@ -109,8 +109,9 @@ pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> V
 pub(super) fn block(kept: &[Kept]) -> Block {
     let mut table = Table::new(
         format!(
-            "Variations of the reconstructed rack: {} racks, spread evenly. Lengths, angles and both coefficients of \
-             friction differ from those of the reconstructed rack by at most 5 %, k and c by at most 10 %.",
+            "Variations of the reconstructed rack: {} racks, spread evenly over the following ranges. Lengths, angles \
+             and both coefficients of friction differ from those of the reconstructed rack by at most 5 %, k and c by \
+             at most 10 %.",
             kept.len()
         ),
         &[("finding", ""), ("racks that reproduce the finding", "")],

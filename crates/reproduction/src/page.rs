@@ -228,9 +228,9 @@ fn stand_in(results: &Results) -> String {
         _ => summary.outcome.kind.to_owned(),
     };
     format!(
-        "This is not the paper's motion, so the results cannot be compared with the paper's numbers. Under {} the six \
-         barrels with μ 0.4 have the outcome: {}, with a residual slip of {} cm; with μ 0.1: {}, with a residual slip \
-         of {} cm.",
+        "This is not the paper's motion, so the results cannot be compared with the paper's numbers. Results of the \
+         six barrels under {}: with μ 0.4, {} and a residual slip of {} cm; with μ 0.1, {} and a residual slip of {} \
+         cm.",
         results.motion.name(),
         what(six),
         slip(six),
@@ -338,9 +338,9 @@ fn studies(results: &Results) -> Vec<Block> {
     let mut blocks = vec![
         Block::heading(2, "Effects of single quantities"),
         text(
-            "The paper gives neither the dimensions of its racks nor the number of its contact \
-             elements, and it does not state how its sine begins. Here each of these quantities, and \
-             each parameter that the paper does state, is changed, one at a time.",
+            "The paper gives neither the dimensions of its racks nor the number of its contact elements, and it does \
+             not state how its sine begins. Here, these quantities and the parameters that the paper states are \
+             changed one at a time.",
         ),
     ];
     for study in &results.studies {

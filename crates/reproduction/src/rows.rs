@@ -71,7 +71,11 @@ fn reasons(study: Option<&Study>, published: f64) -> String {
     let range = study
         .times()
         .map(|[low, high]| {
-            format!(" The changes of the study span {} to {}.", seconds(low), seconds(high))
+            format!(
+                " With the changes of the study, this time ranges from {} to {}.",
+                seconds(low),
+                seconds(high)
+            )
         })
         .unwrap_or_default();
     if time(&study.base).is_some_and(close) {
@@ -127,7 +131,7 @@ fn six(results: &Results) -> Vec<Comparison> {
             "right after the peak velocity",
             format!("{} after it ({})", seconds(loss - peak), seconds(peak)),
             (0.0..=2.0).contains(&(loss - peak)),
-            "counted as \"right after\" up to 2 s",
+            "a delay of up to 2 s counts as \"right after\"",
         ));
     }
     rows.push(number(
@@ -136,11 +140,10 @@ fn six(results: &Results) -> Vec<Comparison> {
         (2.9, ""),
         stress::average(&results.six.run),
         STRESS_BAND,
-        "The paper reads an average off the envelope of barrel 1; here, the amplification is the \
-         mean of the largest stresses until the first loss of seat divided by the mean of the \
-         stress at rest, both for the boundary that is loaded at rest. This definition follows \
-         the words of the paper; another definition in the rows below comes nearer to the \
-         published value.",
+        "The paper reads an average from the envelope of barrel 1; here, the amplification is the mean of the largest \
+         stresses until the first loss of seat, divided by the mean of the stress at rest; both means are taken over \
+         the boundary that is loaded at rest. This definition follows the words of the paper; another definition in \
+         the rows below comes nearer to the published value.",
     ));
     rows.extend(stress::definitions(&results.six.run, "section 3, Fig. 6b", "six barrels, μ 0.4"));
     let top = figures::footprint(&results.six.run, "B1.1", true);
@@ -171,7 +174,7 @@ fn six(results: &Results) -> Vec<Comparison> {
         Some((0.0, 5.0, "at most 5 cm")),
         format!(
             "At the end of the run. While the stack stands the rack slips by {} cm at most; at the loss of seat, its \
-             slip is {} cm. The residual comes from the fall of the upper levels, which is sensitive to small \
+             slip is {} cm. The residual slip comes from the fall of the upper levels, which is sensitive to small \
              changes.",
             centimeters(demands.base_slip_peak),
             centimeters(demands.base_slip_at_collapse)
@@ -421,10 +424,11 @@ fn parameters(results: &Results) -> Vec<Comparison> {
             format!("{same_mode} of {members} in the same mode"),
             same_mode == members,
             format!(
-                "The top level falls in {} of {members} runs, and one of its barrels falls before all other barrels in {} of them. The \
-                 first fall is at {} s, the drift is {} %, and the stress amplification is {}. Two mechanisms compete: in the case \
-                 as stated R4 leaves its seat first and alone, when R3 has walked {} cm of its reach of {} cm; \
-                 in the other mode R3 leaves its seat and carries level 4 along.{racks}",
+                "The top level falls in {} of {members} runs, and one of its barrels falls before all other barrels in \
+                 {} of them. The first fall is at {} s, the drift is {} %, and the stress amplification is {}. Two \
+                 mechanisms compete: in the case as stated R4 leaves its seat first and alone, and R3 walks only {} of \
+                 the {} cm at which it would leave its seat; in the other mode R3 leaves its seat and carries level 4 \
+                 along.{racks}",
                 count(&ensemble::top_falls),
                 count(&ensemble::top_falls_first),
                 span(&|m| m.outcome.first_fall),

@@ -89,7 +89,7 @@ pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Com
         difference: None,
         band: None,
         agreement: Agreement::NotCompared,
-        why: format!("{meaning}; until the first loss of seat"),
+        why: format!("{meaning}; evaluated until the first loss of seat"),
     };
     DEFINITIONS.into_iter().map(row).collect()
 }

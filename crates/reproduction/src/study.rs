@@ -44,7 +44,8 @@ impl Subject {
     }
 
     /// Returns the maximum duration (s) of a run, and the time (s) for which the run continues after the collapse. If
-    /// [`Subject::time`] is that of the first fall, the latter must be long enough to include this fall.
+    /// [`Subject::time`] is the time of the first fall, the time after the collapse must be long enough to include
+    /// this fall.
     fn duration(self) -> (f64, f64) {
         match self {
             Self::Six => (20.0, 0.1),

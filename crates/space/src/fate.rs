@@ -304,7 +304,8 @@ impl Fates {
     ///
     /// A body with a carrier, such as a barrel on a rack, has one displacement, in the frame of the carrier. A rack on
     /// barrels has one displacement for each barrel below, in the frame of the rack. These frames rotate with their
-    /// bodies; at rest, their axes are those of the stack. Any other body has one displacement, relative to the ground.
+    /// bodies; at rest, their axes are the axes of the stack. Any other body has one displacement, relative to the
+    /// ground.
     fn slips(&self, poses: &[Pose<Spatial>], i: BodyId, slips: &mut Vec<Vec3>) {
         slips.clear();
         let part = &self.stack.parts[i];

@@ -58,12 +58,13 @@ impl Ground {
         let turned = turn_to_other(motion)?.filter(|_| second.is_some());
         match turned {
             None if second.is_some() => warnings.push(
-                "the record does not state the directions of its horizontal components: the second is assumed to point \
-                 a quarter turn counterclockwise from the first"
+                "the record does not state the directions of its horizontal components: the second is assumed to be \
+                 perpendicular to the first, counterclockwise from it"
                     .to_owned(),
             ),
             Some(turn) if (turn % 180.0 - 90.0).abs() > SQUARE => warnings.push(format!(
-                "the horizontal components of the record are {turn:.0} degrees apart, but are used as if they were a quarter turn apart"
+                "the directions of the horizontal components of the record differ by {turn:.0} degrees, but the \
+                 components are used as if they were perpendicular"
             )),
             Some(_) | None => {}
         }

@@ -28,8 +28,8 @@ const FEWEST: usize = 6;
 /// A case whose stack is at rest, and its index among all cases.
 pub(crate) type Ready = (usize, Prepared);
 
-/// Runs cases in lanes on one core, and returns the cases that the caller has to run one after the other. Those are the
-/// cases that cannot share a register with enough other cases; they are all cases if `in_lanes` is `false` or if the
+/// Runs cases in lanes on one core, and returns the cases that the caller has to run one after the other. These are
+/// the cases that cannot share a register with enough other cases, or all cases if `in_lanes` is `false` or if the
 /// machine has no vector unit.
 ///
 /// `report` receives the index and the result of each finished case. The work ends when `stop` returns `true`.

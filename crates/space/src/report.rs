@@ -27,8 +27,8 @@ pub fn player(run: &Run, scene: Scene) -> Player {
     Player {
         id: "player".into(),
         caption: format!(
-            "The computed motion of the run, to scale, in a view that can be turned. Arrows show contact forces, each on the \
-             body that it pushes up.{}",
+            "The computed motion of the run, to scale, in a view that can be turned. Arrows show contact forces, each \
+             drawn on the body that the force pushes up.{}",
             legend(&scene)
         ),
         scene: Arc::new(Scene { ground: ground_histories(run), ..scene }),
@@ -57,8 +57,8 @@ pub fn document(answer: &Answer) -> Document {
         id: "players".into(),
         caption: format!(
             "One run, in a view that can be turned, or in three flat views at the same time and scale. In the flat views, \
-             bodies are drawn in the order of their depth at rest. Arrows show contact forces, each on the body that it \
-             pushes up.{}",
+             bodies are drawn in the order of their depth at rest. Arrows show contact forces, each drawn on the body \
+             that the force pushes up.{}",
             legend(&scenes[0].1)
         ),
         panes: scenes.iter().map(pane).collect(),
@@ -98,7 +98,7 @@ pub fn document(answer: &Answer) -> Document {
             ]);
             let table = interface_table(
                 "Force on the upper body, or on the body that is named first: the value of largest magnitude until \
-                 the first loss of seat, and that of largest magnitude over the whole run, falls \
+                 the first loss of seat, and the value of largest magnitude over the whole run, falls \
                  included. Each horizontal force is the resultant of its two horizontal components.",
                 &summary.interfaces,
             );
@@ -190,8 +190,8 @@ fn variants(summary: &Summary) -> Option<Table> {
     let mut table = Table::new(
         format!(
             "Ranges span the 5th to the 95th percentile of the variants. The first body is the first that loses its \
-             seat; its direction is that in which it leaves the seat. The direction of a barrel that fell{} is \
-             that from its position at rest to its position at the end of the variant.",
+             seat; its direction is the direction in which it leaves the seat. The direction of a barrel that fell{} \
+             is the direction from its position at rest to its position at the end of the variant.",
             spread.counted("the first loss of a seat")
         ),
         &[("", ""), ("in three dimensions", "")],

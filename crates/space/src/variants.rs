@@ -1,5 +1,5 @@
-//! Variants of a three-dimensional stack. They are sampled and evaluated like those of a plane model; in addition, the
-//! directions of falls are recorded.
+//! Variants of a three-dimensional stack. They are sampled and evaluated like the variants of a plane model; in
+//! addition, the directions of falls are recorded.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -179,7 +179,7 @@ pub fn demands(run: &Run, span: Span) -> Demands {
 /// The observer receives the number of finished cases and their total, and may stop the work. Unfinished cases are
 /// returned as interrupted.
 ///
-/// The first result is that of the scenario as stated, followed by those of the variants in the order of their numbers.
+/// The result of the scenario as stated is followed by the results of the variants, in the order of their numbers.
 /// Unlike in a plane model, no variant exchanges the horizontal components: all variants keep the azimuth of the
 /// scenario.
 ///

@@ -23,7 +23,7 @@ pub fn headline(run: &Run, summary: &Summary) -> String {
     match &run.outcome {
         Outcome::Stable => match summary.demands.stave_utilization.filter(|load| *load > 1.0) {
             Some(load) => format!(
-                "This stack stands, but staves are crushed: they carry up to {:.0} % of their stated capacity.",
+                "This stack stands, but staves are crushed: their load reaches up to {:.0} % of their stated capacity.",
                 100.0 * load
             ),
             None => "This stack stands.".to_owned(),
@@ -100,14 +100,15 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// Describes the direction in which a body first leaves its seat, with the numbers of variants in which this direction
-/// is across and along the barrels. `collapsed` is the number of variants that fall. `None` if no body leaves its seat.
+/// Describes the direction in which the first body to lose its seat leaves it, with the numbers of variants in which
+/// this direction is across and along the barrels. `collapsed` is the number of variants that fall. `None` if no body
+/// leaves its seat.
 fn first_losses([across, along]: [u32; 2], collapsed: u32) -> Option<String> {
     let in_which = |count: u32| match count {
         all if all == collapsed => format!("In {}", all_that_fall(all)),
         some => format!("In {some} of the {collapsed} variants that fall"),
     };
-    let event = "a body first leaves its seat";
+    let event = "the first body to lose its seat leaves it";
     Some(match (across, along) {
         (0, 0) => return None,
         (0, along) => format!("{}, {event} along the barrels.", in_which(along)),
@@ -118,9 +119,9 @@ fn first_losses([across, along]: [u32; 2], collapsed: u32) -> Option<String> {
     })
 }
 
-/// Describes the directions in which fallen barrels are displaced, with the numbers of those that are displaced mainly
-/// across and mainly along the barrels. `when` states which barrels are counted, such as " within 2 s of the first loss
-/// of a seat". `None` if no barrel falls.
+/// Describes the directions in which fallen barrels are displaced, with the numbers of barrels that are displaced
+/// mainly across and mainly along the barrels. `when` states which barrels are counted, such as " within 2 s of the
+/// first loss of a seat". `None` if no barrel falls.
 fn debris(counts: [u32; 2], when: &str) -> Option<String> {
     let [across, along] = counts.map(f64::from);
     let all = across + along;
@@ -134,7 +135,7 @@ fn debris(counts: [u32; 2], when: &str) -> Option<String> {
         format!("All {barrels} end up displaced mainly {direction} the barrels.")
     } else if share < CLEAR {
         format!(
-            "Of the {barrels}, about as many end up displaced mainly across the barrels as mainly along them."
+            "Of the {barrels}, about equal numbers end up displaced mainly across and mainly along the barrels."
         )
     } else {
         format!(
@@ -213,7 +214,7 @@ mod tests {
 
     #[test]
     fn the_first_loss_of_a_seat_is_stated_with_its_number_first_and_without_zeros() {
-        let along = "a body first leaves its seat along the barrels.";
+        let along = "the first body to lose its seat leaves it along the barrels.";
         for (counts, collapsed, words) in [
             ([0, 15], 15, format!("In all 15 variants that fall, {along}")),
             ([0, 2], 2, format!("In both variants that fall, {along}")),
@@ -223,13 +224,13 @@ mod tests {
             (
                 [4, 0],
                 4,
-                "In all 4 variants that fall, a body first leaves its seat across the barrels.".to_owned(),
+                "In all 4 variants that fall, the first body to lose its seat leaves it across the barrels.".to_owned(),
             ),
             (
                 [3, 12],
                 15,
-                "In 3 of the 15 variants that fall, a body first leaves its seat across the barrels, and in 12 \
-                 along them."
+                "In 3 of the 15 variants that fall, the first body to lose its seat leaves it across the barrels, and \
+                 in 12 along them."
                     .to_owned(),
             ),
         ] {
@@ -246,7 +247,7 @@ mod tests {
         for (counts, words) in [
             ([2, 98], format!("98 % of the {barrels} {end} along the barrels.")),
             ([90, 10], format!("90 % of the {barrels} {end} across the barrels.")),
-            // A share that is not 100 % is not rounded to it.
+            // A share below 100 % is not rounded to 100 %.
             ([1, 999], format!("99.9 % of the {barrels} {end} along the barrels.")),
             ([0, 7], format!("All {barrels} {end} along the barrels.")),
             ([7, 0], format!("All {barrels} {end} across the barrels.")),

@@ -88,15 +88,14 @@ impl Checked {
         lines.push(format!("  time step     {:.3} ms", 1e3 * self.time_step));
         if let Some(rest) = &self.rest {
             lines.push(format!(
-                "  at rest       after {} steps, deepest sinking {:.1} mm, forces balanced to {:.0e} of \
-                 gravity",
+                "  at rest       after {} steps, deepest sinking {:.1} mm, residual acceleration at most {:.0e} g",
                 rest.steps,
                 1e3 * rest.deepest_sinking,
                 rest.unbalanced
             ));
             lines.push(format!(
-                "  friction      locked in as the stack settled: {:.0} % of the normal forces, at {} sticking \
-                 contacts and {} contacts at their limit",
+                "  friction      at rest, {:.0} % of the normal forces; {} contacts stick, and {} are at their \
+                 friction limit",
                 100.0 * rest.locked_friction,
                 rest.holding,
                 rest.slipping

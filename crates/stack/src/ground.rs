@@ -46,7 +46,7 @@ impl Scenario {
 
     /// Returns the ground motion of a record in memory, in place of the scenario's own motion.
     ///
-    /// Components, processing and scale are those of the scenario. If the scenario's own motion is not a record, the
+    /// Components, processing and scale are taken from the scenario. If the scenario's own motion is not a record, the
     /// first horizontal component with the default processing is used.
     ///
     /// ```
@@ -98,7 +98,7 @@ impl Scenario {
 
     /// Returns the scenario with a record in memory in place of its own motion.
     ///
-    /// Components, processing and scale remain those of the scenario.
+    /// The components, the processing and the scale of the scenario are kept.
     ///
     /// # Errors
     /// If the record has no channel, or if its channels have different time steps.

@@ -203,8 +203,8 @@ impl Scenario {
 }
 
 impl Run {
-    /// Returns how much of the ground motion (s) was left when `run.duration` ended the run. Returns `None` if at most
-    /// [`CUT`] was left, or if the run ended for another reason.
+    /// Returns the duration (s) of the ground motion that was left when `run.duration` ended the run. Returns `None`
+    /// if at most [`CUT`] was left, or if the run ended for another reason.
     pub fn cut(&self) -> Option<f64> {
         cut(self.ending, self.ground.end(), self.end_time)
     }
@@ -300,7 +300,7 @@ pub fn end_time(
         (Until::Rest | Until::Verdict, end) => Ok(end.unwrap_or(0.0) + run.patience * time_scale),
         (Until::Duration, Some(end)) => Ok(end + 5.0 * time_scale),
         (Until::Duration, None) => Err(RunFailure::Duration(
-            "the scenario has no motion, so the run has no natural end: set run.duration, such as \
+            "the scenario has no motion, so nothing determines the end of the run: set run.duration, for example \
              \"10 s\""
                 .into(),
         )),
@@ -364,7 +364,7 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
         .filter(|interface| interface.friction.creep_speed(0.5) > 0.0)
         .map(|interface| {
             format!(
-                "{}: contacts creep under the regularized friction law: at half of the friction limit, \
+                "{}: contacts creep under the regularized friction law: if the friction force is half of its limit, \
                  they slide at {:.2e} m/s",
                 interface.name,
                 interface.friction.creep_speed(0.5)

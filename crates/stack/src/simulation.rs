@@ -64,8 +64,8 @@ struct Fixed {
     settled: Option<Settled>,
     settings: barrelstack_dynamics::Simulation,
     sticks: Vec<SoftStick>,
-    /// Number of force evaluations before the run, which include those of settling, and number of contact elements that
-    /// these evaluations tested.
+    /// Number of force evaluations before the run, including the evaluations during settling, and number of contact
+    /// elements that were tested in these evaluations.
     before: (u64, u64),
 }
 
@@ -184,7 +184,8 @@ impl Simulation {
             conclude(&assembly, &ground, &fates, ended, state.time, ending);
         warnings.extend(restitution_warning(&scenario));
         if outcome == Outcome::Stable {
-            // Soft friction springs falsify small slips only, which are of no interest once the stack has collapsed.
+            // Soft friction springs cause errors in small slips only, which are of no interest once the stack has
+            // collapsed.
             let slips = (0..assembly.parts.len()).map(|body| fates.fate(body).residual_slip.abs());
             let most = slips.fold(0.0, f64::max);
             warnings.extend(
@@ -301,7 +302,7 @@ impl Simulation {
         &self.fixed.ground
     }
 
-    /// Returns `true` if both simulations are clones of one simulation, which may be in different states.
+    /// Returns `true` if both simulations are clones of one simulation; the clones may be in different states.
     pub fn is_clone_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.fixed, &other.fixed)
     }

@@ -143,8 +143,8 @@ pub fn restitution_warning(scenario: &Scenario) -> Option<String> {
     let states = laws.iter().any(|law| law.law.states_restitution());
     (states && tolerance > KEEPS_RESTITUTION).then(|| {
         format!(
-            "run.tolerance = {tolerance:e}: the adaptive method may miss the restitution of this \
-             scene by several percent; the tolerance {KEEPS_RESTITUTION:e} reproduces the restitution"
+            "run.tolerance = {tolerance:e}: with the adaptive method, the restitution may differ from the stated \
+             value by several percent; the tolerance {KEEPS_RESTITUTION:e} reproduces this value"
         )
     })
 }

@@ -67,8 +67,8 @@ impl fmt::Display for SoftStick {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{}: the friction spring yields after {:.2} mm, so reversing slip on ground that moves by \
-             {:.0} mm may differ by {:.0} % from slip with rigid friction; a \
+            "{}: a contact slips only after its friction spring has stretched by {:.2} mm, so if the ground moves \
+             back and forth by {:.0} mm, the slip may differ by {:.0} % from the slip with rigid friction; a \
              friction.tangential_stiffness_ratio {:.0} times as large reduces this error to {:.0} %",
             self.interface,
             1e3 * self.yields,

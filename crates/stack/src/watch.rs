@@ -95,8 +95,8 @@ pub fn after_collapse(scenario: &Scenario) -> f64 {
 }
 
 impl<R: Real> End<R> {
-    /// Observes an accepted state. Returns the lanes in which the run has continued after a collapse for as long as it
-    /// may, and the lanes in which all bodies are at rest.
+    /// Observes an accepted state. Returns the lanes in which the time limit after a collapse has expired, and the
+    /// lanes in which all bodies are at rest.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn observe(

@@ -22,7 +22,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let exact = fine.iter().map(|spacing| theory(DOMINO, *spacing)).collect();
     let mut series = vec![Series::new("theory, smooth dominoes", fine, exact)];
     let mut found = vec![Vec::new(); FRICTION.len()];
-    println!("| free distance / height | theory | friction 0 | difference | 0.2 | 0.4 |");
+    println!(
+        "| free distance / height | theory | computed, friction 0 | difference from the theory | friction 0.2 \
+         | friction 0.4 |"
+    );
     println!("|---|---|---|---|---|---|");
     for spacing in spacings {
         for (friction, all) in FRICTION.into_iter().zip(&mut found) {

@@ -214,7 +214,7 @@ impl RockingBlock {
         Ok(Some(self))
     }
 
-    /// Returns whether a ground motion overturns the block.
+    /// Returns `true` if a ground motion overturns the block.
     ///
     /// `acceleration_end` (s) is the end of the ground acceleration.
     ///
@@ -228,7 +228,7 @@ impl RockingBlock {
         self.ride(drive, acceleration_end, 15.0).map(|ride| ride.overturned)
     }
 
-    /// Returns whether a ground motion overturns the block before it comes back upright.
+    /// Returns `true` if a ground motion overturns the block before it comes back upright.
     ///
     /// # Errors
     /// If the run fails numerically.
@@ -253,7 +253,7 @@ impl RockingBlock {
         Ok(fell)
     }
 
-    /// Simulates the block on moving ground; returns whether it overturns, and its largest rotation.
+    /// Simulates the block on moving ground; returns `true` if the block overturns, and its largest rotation.
     ///
     /// `acceleration_end` (s) is the end of the ground acceleration. The run ends when the block has overturned or can
     /// no longer overturn, and at the latest `patience` (s) after the end of the acceleration.

@@ -24,8 +24,8 @@ enum Topic {
 pub fn labels(runs: &[(String, Scenario)]) -> Vec<String> {
     let differing = differences(runs.iter().map(|(_, scenario)| scenario));
     let mut topics: Vec<(Topic, &Difference)> = Vec::new();
-    // A static coefficient that the scenario omits equals the kinetic one, so it is not a
-    // difference of its own.
+    // A static coefficient that the scenario omits equals the kinetic one, so it does not count as a separate
+    // difference.
     let follows = |one: &Difference| {
         one.path.strip_suffix("static_coefficient").is_some_and(|of| {
             let led = |other: &Difference| other.path == format!("{of}coefficient");

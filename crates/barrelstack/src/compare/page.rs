@@ -443,8 +443,8 @@ fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
     motions.all(|motion| Some(motion) == first)
 }
 
-/// Returns the ground motions to draw below the players. If all runs have the same motion, that of
-/// the longest run is drawn; otherwise, the motion of each run is drawn.
+/// Returns the ground motions to draw below the players. If all runs have the same motion, the motion of the longest
+/// run is drawn; otherwise, the motion of each run is drawn.
 fn lanes(sides: &[Side]) -> Vec<History> {
     if one_motion(sides) {
         let longest = sides.iter().max_by(|a, b| a.end_time.total_cmp(&b.end_time));
@@ -548,8 +548,8 @@ fn history(
         let at_time = side.collapse_time?;
         Some(Mark { at: at_time, label: format!("{} gives way", letter(at)) })
     });
-    // Falling bodies leave the plot, so that the standing ones stay legible; forces and
-    // accelerations are plotted in full.
+    // Falling bodies leave the plot, so that the curves of standing bodies stay legible; forces and accelerations are
+    // plotted in full.
     let ranges: Vec<Option<[f64; 2]>> = lines
         .iter()
         .map(|(side, one)| report::standing_until(side.collapse_time?, std::slice::from_ref(one)))

@@ -9,8 +9,8 @@ use crate::ensemble;
 
 /// Column names with their meanings.
 ///
-/// A listed name that begins with `_` is a suffix: it stands for all column names that end in it.
-/// Such column names begin with the name of a body, of two bodies or of the ground.
+/// A listed name that begins with `_` is a suffix: it applies to all column names that end with it. Such column names
+/// begin with the name of a body, of two bodies or of the ground.
 const MEANINGS: [(&str, &str); 39] = [
     ("time", "time since the motion began"),
     (

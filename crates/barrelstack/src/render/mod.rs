@@ -116,7 +116,7 @@ impl Rendering {
                 "expected two times (s), the first not negative and the second later, found {from} and {to}"
             )),
             Some([from, _]) if from > end_time => Err(format!(
-                "the run ends at {end_time:.2} s, so there is nothing to render after {from} s"
+                "the run ends at {end_time:.2} s, so there is nothing to render after {from} s; choose an earlier start"
             )),
             _ => Ok(()),
         }
@@ -257,8 +257,8 @@ impl RenderFolder {
             Ok(files) => Ok(Rendered { part, place, files }),
             Err(error) => {
                 for file in self.earlier(part).unwrap_or_default() {
-                    // A file that cannot be removed is left; the returned error, that of the write, is more
-                    // informative.
+                    // A file that cannot be removed is left in place; the error of the write, which is returned, is
+                    // more informative.
                     let _ = std::fs::remove_file(file);
                 }
                 if part != Part::Report {

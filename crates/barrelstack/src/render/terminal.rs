@@ -19,8 +19,8 @@ pub fn final_picture(run: &Run, characters: Characters) -> Vec<String> {
 /// Draws the displacement of the top barrels relative to the ground, while the stack stands, as a
 /// line of `columns` characters.
 ///
-/// Also returns two times (s): that of the end of the line, and that of the maximum. Returns `None`
-/// for a free scene and for an invalid run.
+/// Also returns the time (s) at the end of the line and the time (s) of the maximum. Returns `None` for a free scene
+/// and for an invalid run.
 pub fn drift_line(run: &Run, columns: usize, characters: Characters) -> Option<(String, [f64; 2])> {
     if matches!(run.outcome, Outcome::Invalid { .. }) {
         return None;

@@ -49,7 +49,7 @@ struct Section<'a> {
 }
 
 impl Section<'_> {
-    /// Returns the three-dimensional body of a planar part. A planar barrel stands for several barrels, so its body is
+    /// Returns the three-dimensional body of a planar part. A planar barrel represents several barrels, so its body is
     /// drawn once at the position of each of them.
     fn body(&self, assembly: &Assembly, index: usize, part: &Part) -> DepthBody {
         let (role, volumes, rows) = match part.kind {

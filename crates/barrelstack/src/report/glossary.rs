@@ -9,7 +9,10 @@ pub const WORDS: &[Word] = &[
         "variant",
         "the same stack with small differences: millimeters out of place, a little heavier or lighter, more or less slippery",
     ),
-    word("95 % interval", "a range that contains the true share in 19 of 20 such samples"),
+    word(
+        "95 % interval",
+        "a range computed from a sample; 19 of 20 such ranges contain the true share",
+    ),
     word("across the barrels", "in the plane that shows the heads of the barrels, as circles"),
     word("along the barrels", "in the plane that shows the barrels from the side"),
     word("cradle", "the two bars of a rack between which a barrel lies"),

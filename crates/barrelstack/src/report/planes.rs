@@ -41,7 +41,8 @@ pub(super) fn players(
     Players {
         id: "players".into(),
         caption: format!(
-            "The computed motion of the stack, across and along its barrels, at the same times and to the same scale. Arrows show contact forces, each on the body that it pushes up.{}",
+            "The computed motion of the stack, across and along its barrels, at the same times and to the same scale. \
+             Arrows show contact forces, each drawn on the body that the force pushes up.{}",
             drawing::legend(scene)
         ),
         panes: both.into(),

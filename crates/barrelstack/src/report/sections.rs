@@ -137,7 +137,8 @@ pub fn player(run: &Run, scene: &Arc<Scene>) -> Player {
     Player {
         id: "player".into(),
         caption: format!(
-            "The computed motion of the run, to scale. Arrows show contact forces, each on the body that it pushes up.{}",
+            "The computed motion of the run, to scale. Arrows show contact forces, each drawn on the body that the \
+             force pushes up.{}",
             drawing::legend(scene)
         ),
         scene: Arc::clone(scene),
@@ -169,8 +170,8 @@ fn sequence(run: &Run, scene: &Arc<Scene>) -> Vec<Block> {
 
 fn fates(summary: &Summary) -> Table {
     Table::of(
-        "The largest slip is that of the body relative to its support while the stack stood. The displacement at the \
-         end is relative to the ground, from the position at rest.",
+        "The largest slip is the largest displacement of the body relative to its support while the stack stood. The \
+         displacement at the end is relative to the ground, from the position at rest.",
         &summary.bodies,
         &[
             ("body", "", &|body| Cell::text(&body.name)),
@@ -236,8 +237,8 @@ fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
     let band = variants.map(|variants| band(run, variants)).unwrap_or_default();
     let mut caption = "Horizontal displacement relative to the ground.".to_owned();
     if !band.is_empty() {
-        caption += " At every time, the displacements in 90 % of all variants lie between the thin lines; a variant \
-                    that has ended counts with its last displacement.";
+        caption += " At every time, the displacements in 90 % of all variants lie between the thin lines; after \
+                    the end of a variant, its last displacement is used.";
     }
     series.extend(band);
     let axis = Axis { range, ..Axis::new("displacement", "cm") };
@@ -298,7 +299,7 @@ fn stresses(run: &Run) -> Vec<Block> {
                  is drawn outward from the point at which it acts. It is the force divided by the length of boundary \
                  on which a contact is assumed to bear: at a node, half of the distance to each neighboring node; at \
                  a contact without nodes, 1 cm at full scale. The gray area shows the line load at rest. The area \
-                 behind it shows the largest line load until the first loss of a seat."
+                 behind the gray area shows the largest line load until the first loss of a seat."
                     .into(),
             ),
         );
@@ -457,7 +458,9 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
         history(
             run,
             "energy",
-            "Change of energy since the start. The balance holds where the sum of stored and dissipated energy follows the edge of the shaded area, which is the work of the ground. A falling body converts potential energy to kinetic energy, which friction and damping dissipate.",
+            "Change of energy since the start. The shaded area shows the work of the ground; the balance holds where \
+             the sum of stored and dissipated energy follows the edge of this area. A falling body converts potential \
+             energy to kinetic energy, which friction and damping dissipate.",
             Axis::new("energy", "kJ"),
             series,
         ),

@@ -73,13 +73,13 @@ fn words(rocking: &Rocking) -> String {
                 "would rock with a period of {} s at the largest drift",
                 significant(period, 2)
             ),
-            "a stack of loose parts yields at every level and rocks more slowly",
+            "a stack of loose parts rocks more slowly than such a block, because its parts can move at every level",
         )
     } else {
         (
             "would overturn at the largest drift, so it has no period there".to_owned(),
-            "at smaller drifts, a stack of loose parts rocks more slowly than such a block, because it yields at \
-             every level",
+            "at smaller drifts, a stack of loose parts rocks more slowly than such a block, because its parts \
+             can move at every level",
         )
     };
     let measured = match (&drift.swings[..], rocking.widest()) {
@@ -92,7 +92,8 @@ fn words(rocking: &Rocking) -> String {
         (many, Some(widest)) => {
             let (low, high) = rocking.range();
             format!(
-                "it made {} full swings with periods of {} to {} s; the widest has an amplitude of {} and a period of {} s",
+                "it made {} full swings with periods of {} to {} s; the widest swing has an amplitude of {} and a \
+                 period of {} s",
                 many.len(),
                 significant(low, 2),
                 significant(high, 2),
@@ -102,10 +103,10 @@ fn words(rocking: &Rocking) -> String {
         }
     };
     format!(
-        "A stack has no fixed natural period: the farther it rocks, the longer its period, so the shaking \
-         to which it responds changes as it sways. While the stack stood, its top drifted by up to {reached} \
-         relative to its foot, and {measured}. A rigid block with the mass and the foot width of the stack {rigid} (Housner \
-         1963: T = 4/p · arcosh(1/(1 − θ₀/α)) with p = {} 1/s and α = {} rad); {loose}.",
+        "A stack has no fixed natural period: the farther it rocks, the longer its period, so it responds to \
+         different periods of the ground motion as its amplitude changes. While the stack stood, its top drifted \
+         by up to {reached} relative to its foot, and {measured}. A rigid block with the mass and the foot width of \
+         the stack {rigid} (Housner 1963: T = 4/p · arcosh(1/(1 − θ₀/α)) with p = {} 1/s and α = {} rad); {loose}.",
         significant(block.frequency, 3),
         significant(block.slenderness, 3),
     )

@@ -5,7 +5,7 @@ use barrelstack_motion::Utc;
 use barrelstack_report::Stamp;
 
 /// Adds the date, and the commit from which the program was built, to all pages that the process writes from now on.
-/// The date is that of the environment variable `SOURCE_DATE_EPOCH` if it is set, otherwise that of the clock.
+/// The date is read from the environment variable `SOURCE_DATE_EPOCH` if it is set, otherwise from the clock.
 ///
 /// The environment variable `BARRELSTACK_COMMIT` replaces the commit. It is read when the program runs, not only
 /// when it is built, so that the pages of two builds can be compared bit for bit, as the tests do.

@@ -8,8 +8,8 @@ use crate::verify::{Repeat, Verification};
 pub fn trust(found: &Verification) -> Vec<Block> {
     let mut blocks: Vec<Block> = found.sentences().into_iter().map(Block::Paragraph).collect();
     let table = Table::of(
-        "Repeats of this run, each with one change. Falls are compared until the first repeat departs \
-         from the run.",
+        "Repeats of this run, each with one change. Falls are compared up to the time at which \
+         the first repeat departs from the run.",
         &found.repeats,
         &[
             ("change", "", &|repeat| Cell::text(&repeat.change)),

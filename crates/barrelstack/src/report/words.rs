@@ -12,8 +12,7 @@ use crate::summary::{Device, EnergyBalance, RunSummary, Summary, Unfinished};
 use crate::variants::{self, Remedy};
 use crate::verify::Verification;
 
-/// Returns the verdict: that of all variants if they were run, otherwise that of the single run,
-/// with its plane.
+/// Returns the verdict on all variants if they were run, otherwise the verdict on the single run with its plane.
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     let spreads = summary.spreads();
     if spreads.is_empty() {
@@ -41,14 +40,14 @@ fn single(run: &Run, summary: &Summary, plane: Option<View>, noun: &str) -> Stri
                 || "the stack stands".to_owned(),
                 |left| {
                     format!(
-                        "the stack stands until {:.1} s, where the run ends, {left:.1} s before the motion does",
+                        "the stack stands until the run ends at {:.1} s, {left:.1} s before the end of the motion",
                         run.end_time
                     )
                 },
             ));
             match crushed(summary) {
                 Some(load) => format!(
-                    "{stands}, but staves are crushed: they carry up to {load} of their stated capacity."
+                    "{stands}, but staves are crushed: their load reaches up to {load} of their stated capacity."
                 ),
                 None => stands + ".",
             }
@@ -256,9 +255,9 @@ pub(super) fn details(
             let drift = summary.demands.top_drift_ratio.unwrap_or(0.0);
             let slip = summary.demands.base_slip_residual.unwrap_or(0.0).abs();
             let foot = if slip < 5e-4 {
-                "the foot ends where it stood".to_owned()
+                "the foot has no residual displacement".to_owned()
             } else {
-                format!("the foot ends {:.1} cm from where it stood", 100.0 * slip)
+                format!("the foot has a residual displacement of {:.1} cm", 100.0 * slip)
             };
             let top = if drift < 1e-3 {
                 "The top of the stack hardly moves".to_owned()
@@ -272,7 +271,7 @@ pub(super) fn details(
     }
     if let Some(load) = crushed(summary) {
         let sentence = format!(
-            "Before any seat is lost, staves carry up to {load} of their stated capacity and are crushed."
+            "Before any seat is lost, staves are crushed: their load reaches up to {load} of their stated capacity."
         );
         sentences.push(behind(&shown(run, summary), &sentence));
     }
@@ -287,8 +286,8 @@ pub(super) fn details(
         sentences.extend(found.sentences());
     } else if judged && summary.ensemble.is_none() {
         sentences.push(
-            "One run is one possible course: small changes of friction or gaps can change what falls \
-             and when, so judge a stack by many runs."
+            "One run shows only one possible course of events: small changes in friction or gaps can change which \
+             bodies fall and when, so judge a stack by many runs."
                 .into(),
         );
     }

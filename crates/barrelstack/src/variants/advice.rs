@@ -23,7 +23,7 @@ impl Remedy {
                 )
             }
             (Some(height), Some(straps)) => format!(
-                "a stack of {} would have stood in {}, and one of {} in {}",
+                "a stack of {} would have stood in {}, and a stack of {} in {}",
                 name(height),
                 share(height),
                 name(straps),
@@ -42,16 +42,18 @@ impl Remedy {
                     .to_owned();
             }
             (None, None) => {
-                let tried = match (any("height"), any("straps")) {
+                return match (any("height"), any("straps")) {
                     (true, true) => format!(
-                        "neither fewer levels, down to one, nor straps tightened to {straps}"
+                        "Neither fewer levels (down to one) nor straps tightened to {straps} would have kept the \
+                         stack up."
                     ),
-                    (true, false) => "fewer levels, down to one".to_owned(),
-                    (false, _) => format!("straps tightened to {straps}"),
+                    (true, false) => {
+                        "Fewer levels (down to one) would not have kept the stack up.".to_owned()
+                    }
+                    (false, _) => {
+                        format!("Straps tightened to {straps} would not have kept the stack up.")
+                    }
                 };
-                return format!(
-                    "None of the changes that were tried would have kept the stack up: {tried}."
-                );
             }
         };
         let stopped =
@@ -65,8 +67,8 @@ impl Remedy {
         )
     }
 
-    /// States which changes were tried and would not have been enough, if a lower stack suffices: the numbers of levels
-    /// above it, and the straps if none suffice. Empty if there are no such changes.
+    /// If a lower stack suffices, states which tried changes would not have been enough: the numbers of levels above
+    /// that of this stack, and the straps if no straps suffice. Empty if there are no such changes.
     fn not_enough(&self) -> String {
         let Some(height) = &self.height else { return String::new() };
         let higher = self
@@ -84,7 +86,9 @@ impl Remedy {
         let straps = (self.straps.is_none() && self.complete && strapped)
             .then(|| format!("straps tightened to {}", self.pretensions()));
         let what = match (levels, straps, &self.straps) {
-            (Some(levels), Some(straps), _) => format!("{levels}, and {straps},"),
+            (Some(levels), Some(straps), _) => {
+                return format!(" Neither {levels} nor {straps} would have been enough.");
+            }
             (Some(levels), None, Some(_)) => format!("{levels} without these straps"),
             (Some(one), None, None) | (None, Some(one), _) => one,
             (None, None, _) => return String::new(),
@@ -222,21 +226,22 @@ impl Remedy {
         )
     }
 
-    /// Tabulates every change that was tried. If `in_planes` is set, the wording is that for planar models, otherwise
-    /// that for three-dimensional models.
+    /// Tabulates every change that was tried. If `in_planes` is set, the wording is for planar models, otherwise for
+    /// three-dimensional models.
     pub fn table(&self, in_planes: bool) -> Table {
         let [stand, tried] =
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
             "Changes that were tried, all of them with the same variants. A change suffices if at least {:.0} % of \
-             the variants stand{stand}. The variants are run in blocks, those first that are likely to fall, and a change \
-             is rejected after the first block at whose end too many variants have fallen; the share of stacks that \
-             fall with a rejected change is therefore not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes \
-             that may be tried{tried}. If friction, stiffness and damping of the seats are drawn from their \
-             distributions, the range over the uncertain constants contains, with a probability of 95 %, the share of \
-             stacks that fall; it includes the sampling error. The last column gives the share of random draws of the \
-             uncertain constants in which fewer stacks fall with the change than without it; the same draws are used \
-             for every change. Straps are assumed not to slip on the barrels and racks that they tie.",
+             the variants stand{stand}. The variants are run in blocks, beginning with the variants that are likely to \
+             fall; a change is rejected after the first block at whose end too many variants have fallen, so the \
+             share of stacks that fall with a rejected change is not known. The intervals hold simultaneously, with \
+             95 % confidence, for all {} changes that may be tried{tried}. With a probability of 95 %, the range over \
+             the uncertain constants contains the share of stacks that fall if friction, stiffness and damping of the \
+             seats are drawn from their distributions; the range includes the sampling error. The last column \
+             gives the share of random draws of the uncertain constants in which fewer stacks fall with the change \
+             than without it; the same draws are used for every change. Straps are assumed not to slip on the barrels \
+             and racks that they tie.",
             100.0 * self.required_share,
             self.candidates
         );

@@ -68,7 +68,7 @@ impl Answer {
         planes.any(|shown| shown.run.interrupted || shown.summary.unfinished.is_some())
     }
 
-    /// Returns the verdict as text: that of all variants if they were run, otherwise that of the single run.
+    /// Returns, as text, the verdict on all variants if they were run, otherwise the verdict on the single run.
     pub fn headline(&self) -> String {
         headline(&self.decides.run, &self.decides.summary)
     }
@@ -138,7 +138,7 @@ pub struct Shown {
     /// The run that is shown.
     pub run: Run,
     /// Summary of the run, with the statistics of all variants; the summary of the governing plane
-    /// includes that of the other plane.
+    /// includes the summary of the other plane.
     pub summary: Summary,
     /// Results of all variants; `None` if there are none, or if they were interrupted.
     pub variants: Option<Variants>,
@@ -257,7 +257,7 @@ pub type RunCases<'a, R, E> = dyn Fn(&[u32], RunCounter<'_>) -> Result<R, E> + '
 /// `None` if some of these are unfinished.
 ///
 /// # Errors
-/// Those of `run`.
+/// The errors of `run`.
 pub fn in_order<R, E>(
     (numbers, planes): (&[u32], usize),
     run: &RunCases<'_, R, E>,

@@ -108,7 +108,8 @@ impl Unknown {
                 Some("pull an empty rack over the floor, and read the force on a luggage scale")
             }
             STATIC_BARREL_RACK => Some(
-                "pull an empty barrel along a rack, and read the force at which it starts to slide and the one that keeps it sliding",
+                "pull an empty barrel along a rack, and read the force at which it starts to slide and the force that \
+                 keeps it sliding",
             ),
             STIFFNESS => Some("set a full barrel down on a rack, and read how far it sinks"),
             _ => None,
@@ -461,7 +462,7 @@ mod tests {
         assert_eq!(names(&["unknowns.stick=0.5", "unknowns.rails=5 mm"]), names(&[]));
         let held = fields(&["unknowns.static_friction=0.4"]);
         let held = held.iter().find(|one| one.field == STATIC_BARREL_RACK).unwrap();
-        // The catalog states 0.30 for kinetic and static friction. The values are those at 5 %, 50 % and 95 % of the
+        // The catalog states 0.30 for kinetic and static friction. The values correspond to 5 %, 50 % and 95 % of the
         // largest excess of 0.4.
         for (deviate, exact) in [(-1.644_854, 0.306), (0.0, 0.36), (1.644_854, 0.414)] {
             let found = held.at(deviate).unwrap();

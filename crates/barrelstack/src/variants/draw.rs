@@ -13,7 +13,7 @@ use crate::scenario::{
 /// The axes of the shared quantities are followed by two axes per body. In three dimensions, one more
 /// axis per body follows, for the position along the barrels. The first row of the stack therefore has
 /// the same values as a stack in the plane across the barrels. Quantities that were added to the
-/// program later have axes beyond those of all bodies, so that the other quantities keep their values.
+/// program later have axes after the axes of all bodies, so that the other quantities keep their values.
 #[derive(Clone, Copy)]
 pub(super) enum Shared {
     FrictionGround,

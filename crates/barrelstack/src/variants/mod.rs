@@ -53,7 +53,7 @@ pub struct Plane {
     /// The nominal case.
     pub scenario: Scenario,
     /// The motion with the other horizontal component, which applies to the second half of the variants if the stack is
-    /// analyzed in both planes; `None` if it is not, or if the motion has no other horizontal component.
+    /// analyzed in both planes; `None` for a stack that is not, or if the motion has no other horizontal component.
     exchanged: Option<MotionSpec>,
 }
 
@@ -114,8 +114,8 @@ impl Plane {
         variant
     }
 
-    /// Returns the scenario of a variant for a run that needs to yield only a verdict. Such a run may end
-    /// before everything has come to rest.
+    /// Returns the scenario of a variant for a run from which only the verdict is needed. Such a run may end before
+    /// everything has come to rest.
     pub fn trial(&self, number: u32) -> Scenario {
         let mut trial = self.variant(number);
         if let (Until::Rest, Some(imperfections)) = (trial.run.until, trial.imperfections()) {
@@ -155,8 +155,8 @@ impl Plane {
     fn warning(&self, planes: usize) -> Option<String> {
         let recorded = matches!(self.scenario.motion.source, MotionSource::Record(_));
         (planes > 1 && recorded && self.exchanged.is_none()).then(|| {
-            "the record has one horizontal component, which shakes the stack across its barrels and along \
-             them"
+            "the record has only one horizontal component: the same component shakes the stack across and along its \
+             barrels"
                 .to_owned()
         })
     }

@@ -120,7 +120,7 @@ pub struct Attempt<'a> {
     pub stack: &'a str,
     /// Number of the change, in the order in which changes are first tried; the first is 1.
     pub number: usize,
-    /// Number of changes that may be tried; the search ends earlier if it has found what suffices.
+    /// Number of changes that may be tried; the search ends earlier if it has found sufficient changes.
     pub candidates: usize,
     /// Number of finished runs of the changed stack.
     pub done: usize,
@@ -207,7 +207,8 @@ impl AsItIs<'_> {
         self.results.iter().map(|all| all.iter().map(|one| verdict(one)).collect()).collect()
     }
 
-    /// Returns the indices of a number of variants, those that lost a seat earliest first, in any plane.
+    /// Returns the indices of the given number of variants, in the order of their first loss of seat in any plane, the
+    /// earliest first.
     fn order(&self, variants: usize) -> Vec<u32> {
         let lost = |variant: &u32| {
             let results = self.results.iter().filter_map(|all| all.get(*variant as usize));
@@ -220,7 +221,7 @@ impl AsItIs<'_> {
 }
 
 /// Searches for a remedy like [`remedy`], with runs prepared by `prepare`. The first block of a change has `first`
-/// variants, or more if fewer cannot reject a change.
+/// variants, or more if so few variants cannot reject a change.
 ///
 /// # Errors
 /// As [`remedy`].

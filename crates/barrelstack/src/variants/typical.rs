@@ -73,9 +73,9 @@ fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
 
 /// Returns the distance between two runs.
 ///
-/// It is 4 if only one of them collapses. Otherwise it is the sum of three terms: 1 if the modes
-/// differ; the difference of the collapse times (or of the drifts), divided by the extent `times`
-/// (or `drifts`); and the share of the barrels that fall in only one of the runs.
+/// The distance is 4 if only one of the two runs collapses. Otherwise, it is the sum of three terms: 1 if the modes
+/// differ; the difference of the collapse times (or of the drifts), divided by the extent `times` (or `drifts`); and
+/// the share of the barrels that fall in only one of the runs.
 fn distance(a: &CaseResult, b: &CaseResult, times: f64, drifts: f64) -> f64 {
     let apart = |a: f64, b: f64, all: f64| if all > 0.0 { (a - b).abs() / all } else { 0.0 };
     match (collapse(a), collapse(b)) {

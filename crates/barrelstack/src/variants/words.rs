@@ -27,7 +27,7 @@ enum Judgment {
     Stands,
     /// No variant falls, but fewer than [`ENOUGH`] variants have a verdict.
     TooFew,
-    /// The runs end at this time (s), before the motion does; until then, no variant falls, or hardly any.
+    /// The runs end at this time (s), before the motion ends; until this time, hardly any variant or none falls.
     Cut(f64),
     /// No variant could be judged.
     None,
@@ -66,7 +66,7 @@ impl Judgment {
             Self::TooFew => "Too few variants to conclude that the stack stands.".to_owned(),
             Self::Cut(until) => {
                 format!(
-                    "Not decided, because the runs end at {until:.1} s, before the motion does."
+                    "Not decided, because the runs end at {until:.1} s, before the motion ends."
                 )
             }
             Self::None => "No verdict.".to_owned(),
@@ -79,8 +79,8 @@ impl Judgment {
 /// Plane and statistics of variants; the plane is `None` for a three-dimensional model.
 type Placed<'a> = (Option<View>, &'a Spread);
 
-/// Describes the results of the variants in one plane or in both: the verdict and what supports it. In `planes`, the
-/// plane across the barrels comes before the plane along the barrels.
+/// Describes the results of the variants in one plane or in both: the verdict and the counts that support it. In
+/// `planes`, the plane across the barrels comes before the plane along the barrels.
 pub fn headline(planes: &[(View, &Spread)]) -> String {
     let placed: Vec<Placed<'_>> =
         planes.iter().map(|(view, spread)| (Some(*view), *spread)).collect();
@@ -148,8 +148,8 @@ fn overloaded((view, spread): Placed<'_>) -> Option<String> {
     let load = spread.stave_utilization.filter(|_| spread.staves_overloaded > 0)?;
     let place = view.map_or_else(String::new, |view| format!("{}, ", view.words()));
     Some(capital(&format!(
-        "{place}in {} of {} variants, staves are crushed before any seat is lost: they carry up to {:.0} % of \
-         their stated capacity.",
+        "{place}in {} of {} variants, staves are crushed before any seat is lost: their load reaches up to {:.0} % \
+         of their stated capacity.",
         spread.staves_overloaded,
         spread.variants,
         100.0 * load
@@ -270,7 +270,7 @@ pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
     let stated = match (spread.stated, spread.standing_until) {
         ("collapse", _) => "falls".to_owned(),
         ("stable", None) => "stands".to_owned(),
-        ("stable", Some(until)) => format!("stands until {until:.1} s, where the runs end"),
+        ("stable", Some(until)) => format!("stands until the runs end at {until:.1} s"),
         _ => "has no verdict".to_owned(),
     };
     let places = format!(
@@ -343,7 +343,7 @@ fn course_of(noun: &str, spread: &Spread) -> String {
         }
         _ => "no barrel falls".to_owned(),
     };
-    format!("{when}{fallen}{}", spread.counted("that"))
+    format!("{when}{fallen}{}", spread.counted("that loss"))
 }
 
 /// Describes the number of fallen barrels, such as "4 to 8 of 10 barrels"; `noun` is the word for the barrels.
@@ -522,10 +522,10 @@ mod tests {
         );
         one.barrels_fallen = Some(range(10.0, 10.0, 10.0, 10.0));
         one.counted_for = Some(2.0);
-        assert!(of(&one).ends_with("at 6.0 s; all 10 barrels fall within 2 s of that."));
+        assert!(of(&one).ends_with("at 6.0 s; all 10 barrels fall within 2 s of that loss."));
         one.first_fall = None;
         let said = of(&one);
-        assert!(said.ends_with("at 6.0 s; no barrel falls within 2 s of that."), "{said}");
+        assert!(said.ends_with("at 6.0 s; no barrel falls within 2 s of that loss."), "{said}");
     }
 
     #[test]
@@ -576,7 +576,7 @@ mod tests {
     fn a_motion_that_is_cut_has_not_been_stood() {
         let [mut one, mut later] = [spread(64, 0), spread(64, 0)];
         (one.standing_until, later.standing_until) = (Some(1.0), Some(2.0));
-        let cut = "Not decided, because the runs end at 1.0 s, before the motion does. Shaken ";
+        let cut = "Not decided, because the runs end at 1.0 s, before the motion ends. Shaken ";
         for planes in [
             vec![(View::Transverse, &one)],
             vec![(View::Transverse, &one), (View::Longitudinal, &later)],
@@ -643,7 +643,7 @@ mod tests {
         one.stave_utilization = Some(0.97);
         assert!(!headline(&[(View::Transverse, &one)]).contains("staves"));
         (one.staves_overloaded, one.stave_utilization) = (5, Some(1.308));
-        let crushed = "5 of 64 variants, staves are crushed before any seat is lost: they carry up to 131 % of \
+        let crushed = "5 of 64 variants, staves are crushed before any seat is lost: their load reaches up to 131 % of \
                        their stated capacity.";
         let said = headline(&[(View::Transverse, &one)]);
         assert!(
@@ -688,16 +688,16 @@ mod tests {
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
         let left =
-            "This measurement narrows the range, on average from 83 to 55 percentage points.";
+            "On average, this measurement narrows the range from 83 to 55 percentage points.";
         assert!(measured.contains("read how far it sinks. ") && measured.ends_with(left));
-        // A constant whose effect may be zero does not decide; nor does one whose effect is certain but small.
+        // A constant does not decide if its effect may be zero, or if its effect is certain but small.
         one.decides = vec![unknown([-0.1, 0.6])];
         let said = headline(&[(View::Longitudinal, &one)]);
         assert!(
             said.contains(&format!("{range}no single one of these constants decides the outcome.")),
             "{said}"
         );
-        // If the smallest share is at the median, it is stated at the median, too.
+        // If the smallest share occurs at the median, the sentence also states the share at the median.
         one.decides = vec![unknown([0.1, 0.6])];
         one.decides[0].shares[4].share = 0.25;
         let said = headline(&[(View::Longitudinal, &one)]);

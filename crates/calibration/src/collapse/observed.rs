@@ -25,7 +25,7 @@ pub(crate) enum Time {
     Never,
 }
 
-/// Whether a stack stood, or the mode in which it collapsed.
+/// Outcome of a test: the stack stood, or it collapsed in a certain mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
     /// The stack stood.
@@ -151,10 +151,10 @@ impl Observed {
             || self.times().any(|(_, time)| time == Time::Never)
             || last == 0.0;
         if open {
-            let remedy = "state this time, which is needed if a barrel or the stack still stood, or if the row \
-                          gives no time";
+            let remedy = "state this time; it is needed if a barrel or the stack still stood, or if the row gives no \
+            time";
             return Err(table
-                .at(row, "until", "how long the test was observed", "nothing", remedy)
+                .at(row, "until", "the time until which the test was observed", "nothing", remedy)
                 .into());
         }
         self.until = last + margin;

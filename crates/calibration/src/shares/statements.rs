@@ -57,14 +57,14 @@ pub struct Earthquake {
 pub struct Statement {
     /// Short name.
     pub id: String,
-    /// What was observed, in a sentence.
+    /// Description of the observation, in one sentence.
     pub statement: String,
     /// Publication or person that makes the statement.
     pub source: String,
     /// How the statement is converted to numbers, such as a share with its error; required unless the kind is
     /// [`Kind::Unusable`].
     pub uncertainty: Option<String>,
-    /// What the statement is about.
+    /// Subject of the statement.
     pub kind: Kind,
     /// Reason why the statement is not used; required if the kind is [`Kind::Unusable`].
     pub reason: Option<String>,
@@ -88,7 +88,7 @@ pub struct Statement {
     pub stacks: Option<f64>,
 }
 
-/// What a statement is about.
+/// Subject of a statement.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {

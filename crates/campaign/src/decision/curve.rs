@@ -125,7 +125,7 @@ impl LimitCurve {
         }
     }
 
-    /// Returns two standard errors: that of `ln(median)` and that of `ln(dispersion)`.
+    /// Returns the standard errors of `ln(median)` and of `ln(dispersion)`.
     ///
     /// With several records, the standard errors are clustered by record. With one record, the cases are
     /// taken as independent.

@@ -62,7 +62,7 @@ fn foreign(name: &str) -> Option<Foreign> {
     }
 }
 
-/// Exports the curves of a decision for other programs; `asset` is the name that a stack gets in these programs.
+/// Exports the curves of a decision for other programs; `asset` is the name of a stack in these programs.
 ///
 /// # Errors
 /// If the other programs do not support the measure, or no limit state has a fitted curve.
@@ -84,8 +84,7 @@ pub fn export(
                 limits.push((name, Lognormal { median, ..fit.curve }));
                 if curve.violates_order() {
                     found.notes.push(format!(
-                        "{}: the raw fractions do not grow steadily with intensity, which the exported curve \
-                         does not show",
+                        "{}: the exported curve hides that the raw fractions do not grow steadily with intensity",
                         curve.limit.words()
                     ));
                 }

@@ -124,9 +124,9 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
     series.extend(line.map(|line| Series { style: style(0), ..line }));
     Figure::new(
         "modes",
-        "Chance of collapse in each mode (cumulative incidence). The modes compete: their chances add up to the chance of \
-         collapse, and one mode may become rarer where another takes over. The lines divide the curve of collapse among \
-         the modes by probit regression.",
+        "Chance of collapse in each mode (cumulative incidence). The modes compete: their chances add up to the chance \
+         of collapse, and one mode may become rarer where another becomes more frequent. The lines divide the curve of \
+         collapse among the modes by probit regression.",
         Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
     )
 }
@@ -246,7 +246,7 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
         "losses",
         format!(
             "Mean number of barrels (of {}) that fall and that burst. The chance that a barrel bursts is assumed from \
-             the height of its fall; the range is that of the assumptions listed below.",
+             the height of its fall; the range covers the assumptions listed below.",
             losses.barrels
         ),
         Plot {

@@ -92,9 +92,9 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         blocks.push(text(
             "The first-order index is the share of the variance that would vanish if the quantity were known; the \
              total index is the share that would remain if all other quantities were known. The total index exceeds \
-             the first-order index by the effect of interactions. Demands are recorded until the collapse. A quantity \
-             without effect in these blocks may have an effect in others; the upper end of an interval is therefore \
-             never zero.",
+             the first-order index by the effect of interactions. Demands are recorded until the stack collapses. A \
+             quantity without effect in these blocks may have an effect in others; the upper end of an interval is \
+             therefore never zero.",
         ));
     } else if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
@@ -106,10 +106,10 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     blocks.push(heading("Measures of shaking as predictors of collapse"));
     blocks.push(Block::Table(tables::measures(decision)));
     blocks.push(text(
-        "Dispersion is the scatter that a measure leaves unexplained: the smaller it is, the fewer records are \
-         needed. Concordance is the chance that of two cases, one collapsed and one standing, the collapsed one had \
-         the stronger shaking by this measure (0.5 is no better than chance). A small p in the last columns means \
-         that the measure under \"tested against\" adds information: the measure of the row is then not sufficient.",
+        "Dispersion is the scatter that a measure leaves unexplained: the smaller it is, the fewer records are needed. \
+         Concordance is the probability that, of a case that collapsed and a case that stood, the collapsed case had \
+         the stronger shaking by this measure (0.5 is no better than chance). A small p in the last columns means that \
+         the measure under \"tested against\" adds information: the measure of the row is then not sufficient.",
     ));
     blocks.push(heading("Motions"));
     blocks.push(Block::Table(motions(decision, made)));
@@ -174,8 +174,7 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
                         .to_owned()
                 }
                 BandKind::None => {
-                    "There is no band: without one of the records the cases determine no curve, so that the \
-                     curve depends on that record."
+                    "There is no band: if one particular record is omitted, the remaining cases determine no curve."
                         .to_owned()
                 }
                 BandKind::Likelihood => {
@@ -247,7 +246,7 @@ fn limits(curves: &[LimitCurve], cases: &Cases) -> Table {
             ("test of monotonicity (p)", "", &|of| Cell::number(violated(of), 2)),
             (
                 &format!(
-                    "{} {} which the stack stands above a level at which it fails",
+                    "{} {} which the stack fails at one level and stands at a higher level",
                     cases.curves_are(),
                     if cases.curves_are() == "motions" { "under" } else { "on" }
                 ),
@@ -266,8 +265,8 @@ fn modes(modes: &[ModeIncidence], measure: &Measure) -> Table {
     let named: Vec<(&str, &str)> =
         columns.iter().map(|(name, unit)| (name.as_str(), *unit)).collect();
     let mut table = Table::new(
-        "Cases that collapse in each mode. A case collapses in one mode only, so that each row adds \
-         up to the collapses of its level.",
+        "Cases that collapse in each mode. A case collapses in one mode only, so the numbers in each row add up to the \
+         number of collapses at its level.",
         &named,
     );
     for (row, stripe) in modes[0].stripes.iter().enumerate() {

@@ -244,9 +244,9 @@ pub(super) fn warnings(
     }
     if cases.fallen_at_rest() > 0 {
         said.push(format!(
-            "In {} of {} cases, the stack does not stand under its own weight: these cases count as collapsed at \
-             every strength of shaking, with the level of barrels that fails and all levels above it on the floor. A \
-             fitted curve tends to zero as the shaking becomes weaker, but the chance of collapse in these cases \
+            "In {} of {} cases, the stack does not stand under its own weight: these cases count as collapsed at every \
+             strength of shaking, and the barrels of the level that fails and of all levels above it count as fallen. \
+             A fitted curve tends to zero as the shaking becomes weaker, but the chance of collapse in these cases \
              does not: use the raw fractions.",
             cases.fallen_at_rest(),
             cases.all.len()
@@ -288,8 +288,8 @@ pub(super) fn warnings(
         }
         if collapse.fit.is_ok() && collapse.band_kind == BandKind::None {
             said.push(format!(
-                "The curve depends on a single one of the {} records: without it the cases determine no curve, so that no \
-                 interval is given. Add records.",
+                "The curve depends on one of the {} records: if this record is omitted, the remaining cases determine \
+                 no curve, so no interval is given. Add records.",
                 cases.records.len()
             ));
         }

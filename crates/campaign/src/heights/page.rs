@@ -274,7 +274,7 @@ fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let Some(AtLevel { stripe, interval, .. }) = worst else { return String::new() };
     let fell = match stripe.failures {
         0 => "none fell".to_owned(),
-        count => format!("no more than {count} of any height fell"),
+        count => format!("at most {count} stacks of the same height fell"),
     };
     format!(
         "in {} motions {fell} (the probability of collapse is at most {} with 95 % confidence)",
@@ -307,8 +307,8 @@ fn sentences(all: &Heights) -> Vec<String> {
     };
     if let (Some((velocity, low)), Some((_, high))) = (share(3), share(6)) {
         said.push(format!(
-            "In shaking as strong as near Napa in 2014 ({}), {} of the stacks of three levels and {} of those of six \
-             collapse{}.",
+            "In shaking as strong as near Napa in 2014 ({}), {} of the stacks of three levels and {} of the stacks of \
+             six levels collapse{}.",
             shaking(velocity),
             percent(low),
             percent(high),
@@ -349,9 +349,9 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(format!(
             "Each cell shows the share of stacks that collapse{}, and in brackets the range of the true chance; each \
              end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or \
-             below, so that a stack with a higher chance is rated low in at most one of 20 studies. ! medium: at most \
-             {:.0} %. ✗ high: more. These limits were chosen by judgment.",
-            in_planes(all, ", in the direction with the higher bound", ""),
+             below, so that a stack whose chance is above this limit is rated low in at most one of 20 studies. \
+             ! medium: at most {:.0} %. ✗ high: more. These limits were chosen by judgment.",
+            in_planes(all, ", in the direction with the higher upper bound", ""),
             100.0 * LOW.0,
             100.0 * LOW.1,
             100.0 * MEDIUM
@@ -457,9 +457,10 @@ fn static_margins(all: &Heights) -> Table {
     };
     Table::of(
         format!(
-            "Static margin: the largest steady horizontal acceleration that a stack bears, and the equivalent tilt \
-             of the floor, with the friction and the seats of the catalog{}. In shaking with pulses that last as \
-             long as the stack takes to tip over, an acceleration slightly above the margin makes the stack collapse.",
+            "Static margin: the largest steady horizontal acceleration that a stack withstands, and the equivalent \
+             tilt of the floor, with the friction and the seats of the catalog{}. In shaking with pulses that last as \
+             long as the stack takes to tip over, an acceleration slightly above the margin makes the stack \
+             collapse.",
             in_planes(
                 all,
                 "",

@@ -143,7 +143,7 @@ fn sentences(all: &Ranking) -> Vec<String> {
     if let Some((best, saved)) = best.and_then(|best| Some((best, best.saved_together?))) {
         let shown = |x: f64| significant(x, 2);
         said.push(format!(
-            "This protection keeps {} barrels from falling on average ({} to {} with 95 % confidence, simultaneously \
+            "On average, this protection keeps {} barrels from falling ({} to {} with 95 % confidence, simultaneously \
              for all {} protections that were tried). The mean for the best of many protections tends to be somewhat \
              too favorable.",
             shown(saved.mean),
@@ -299,18 +299,18 @@ fn table(all: &Ranking) -> Table {
 
 fn legend(all: &Ranking) -> String {
     format!(
-        "•: no other protection that was run in all rounds costs at most as much and loses fewer barrels. \
-         Protections with fewer motions were dropped early, because a cheaper protection is significantly better or \
-         because half of the others did better. \"Barrels saved\" is the number of barrels that a protection keeps \
-         from falling; it compares run by run under the same {}, which is more precise than the difference of two \
-         means. The next column gives an interval that holds for all {} protections at once. This interval decides \
-         whether a protection helps significantly, since the best of many protections tends to look better than it \
-         is. All intervals allow for the small number of motions. Numbers are for the direction of shaking in which \
-         more barrels fall. With a probability of 95 %, the range over the uncertain constants contains the \
-         frequency of collapse of a stack whose friction, stiffness and damping are drawn from their distributions; \
-         it includes the sampling error. Each draw of the constants applies to all protections; a protection is \
-         better in a draw if fewer barrels fall with it. In the draws, the number of barrels that fall in a collapse \
-         is the mean at each level of shaking and does not depend on the constants.",
+        "•: any other protection that was run in all rounds and loses fewer barrels costs more. Protections with fewer \
+         motions were dropped early: either a cheaper protection was significantly better, or half of the others were \
+         better. \"Barrels saved\" is the number of barrels that a protection keeps from falling; runs with and \
+         without the protection are compared in pairs under the same {}, which is more precise than the difference of \
+         two means. The next column gives an interval that holds for all {} protections at once. This interval decides \
+         whether a protection helps significantly, since the best of many protections tends to look better than it is. \
+         All intervals allow for the small number of motions. Numbers are for the direction of shaking in which more \
+         barrels fall. With a probability of 95 %, the range over the uncertain constants contains the frequency of \
+         collapse of a stack whose friction, stiffness and damping are drawn from their distributions; it includes the \
+         sampling error. Each draw of the constants applies to all protections; a protection is better in a draw if \
+         fewer barrels fall with it. The draws do not change the number of barrels that fall in a collapse: at each \
+         level of shaking, it is the mean over the collapses.",
         if all.request.records.is_empty() && all.request.folder.is_none() {
             "motions and friction"
         } else {
@@ -426,7 +426,8 @@ fn warnings(all: &Ranking) -> Vec<String> {
     let fallen = (fallen > 0).then(|| {
         let said = fallen_at_rest(fallen, all.runs, "runs of all protections");
         format!(
-            "{said}Such runs count as collapsed, with the level that fails and all above it on the floor."
+            "{said}Such runs count as collapsed; the barrels of the level that fails and of all levels above it count \
+             as fallen."
         )
     });
     left_out(lost, all.runs).into_iter().chain(fallen).collect()

@@ -56,7 +56,7 @@ pub fn contenders(scenario: &Scenario) -> Vec<Contender> {
 }
 
 /// Returns the overrides that replace the rack of a stack. If the columns of the stack do not fill whole racks, the
-/// overrides also set the number of columns to that of a single rack.
+/// overrides also set the number of columns to the number of a single rack.
 fn on_rack(stack: &StackSpec, rack: &crate::scenario::Rack) -> Vec<String> {
     let mut changes = vec![format!("stack.rack=\"{}\"", rack.base)];
     if !stack.columns.is_multiple_of(rack.barrels.max(1)) {
@@ -136,9 +136,9 @@ fn reason(error: &ScoreError) -> String {
 }
 
 impl League {
-    /// Returns the share of the draws of the uncertain constants in which the score of a row is higher than that of the
-    /// next row. Draws with the same index have the same constants in all rows. Returns `None` for the last row, or if
-    /// the scores in the draws are unknown.
+    /// Returns the share of the draws of the uncertain constants in which the score of a row is higher than the score
+    /// of the next row. Draws with the same index have the same constants in all rows. Returns `None` for the last
+    /// row, or if the scores in the draws are unknown.
     pub fn better_than_next(&self, row: usize) -> Option<f64> {
         let [own, next] = [self.rows.get(row)?, self.rows.get(row + 1)?].map(|(_, s)| s.draws());
         (!own.is_empty() && own.len() == next.len()).then(|| share_less(&next, &own))

@@ -27,11 +27,11 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             Block::Figure(scale_of(sheet)),
             Block::Table(table(sheet)),
             text(
-                "The velocity at which one stack in ten collapses is that of the lognormal curve of maximum \
-                 likelihood for all runs, with its 95 % interval (clustered by motion) in brackets. The smallest of \
-                 all velocities, rounded down, is the score. With a probability of 95 %, the range over the \
-                 uncertain constants contains the velocity of a stack whose friction, stiffness and damping are \
-                 drawn from their distributions; it includes the sampling error.",
+                "The velocity at which one stack in ten collapses is read from the lognormal curve of maximum \
+                 likelihood for all runs, with its 95 % interval (clustered by motion) in brackets. The score is the \
+                 smallest of these velocities, rounded down. With a probability of 95 %, the range over the uncertain \
+                 constants contains the velocity of a stack whose friction, stiffness and damping are drawn from their \
+                 distributions; it includes the sampling error.",
             ),
             Block::Figure(chart(sheet)),
             heading("The protocol"),

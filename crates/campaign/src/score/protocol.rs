@@ -46,9 +46,9 @@ impl Protocol {
     ///
     /// Stacks with four levels of barrels are shaken by six velocity pulses, both components of the bundled record and
     /// sixteen synthetic motions. Each motion is scaled to six levels of peak ground velocity. The friction, stiffness
-    /// and damping of seats are drawn for each run. Their distributions are those from which
-    /// [`variants`](barrelstack::variants) of a stack are drawn. In version 1, only friction was drawn, with less
-    /// scatter, and contact constants were stated per contact element.
+    /// and damping of seats are drawn for each run. The [`variants`](barrelstack::variants) of a stack are drawn from
+    /// the same distributions. In version 1, only friction was drawn, with less scatter, and contact constants were
+    /// stated per contact element.
     pub fn rockscore() -> Self {
         Self {
             name: "rockscore/2".to_owned(),

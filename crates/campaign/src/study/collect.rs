@@ -86,7 +86,7 @@ impl Shards {
 /// provenance of the rows read so far.
 ///
 /// # Errors
-/// If the folder is not that of a study, a shard is damaged, or `visit` fails.
+/// If the folder is not the folder of a study, a shard is damaged, or `visit` fails.
 pub fn read_shards<E: From<StudyError>>(
     folder: &Path,
     visit: &mut dyn FnMut(&Provenance, &StudyTable) -> Result<(), E>,

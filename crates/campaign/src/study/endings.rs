@@ -193,14 +193,16 @@ impl Following {
     pub fn words(&self, motions: usize) -> String {
         let mut said = match self.duration {
             None if self.to_rest => format!(
-                "every case is followed through its motion (after a collapse: until the ground stays below 0.02 g) and until nothing moves, for at most {} s more",
+                "every case is followed to the end of its motion (after a collapse, until the ground acceleration \
+                 stays below 0.02 g), and then until nothing moves, for at most {} s more",
                 self.patience
             ),
             None if self.by_verdict => format!(
-                "every case is followed until its verdict is known; a standing stack is followed until it rests and the ground stays below 0.02 g, at most {} s after its motion",
+                "every case is followed until its verdict is known; a stack that stands is followed until it is at \
+                 rest and the ground acceleration stays below 0.02 g, at most until {} s after the end of its motion",
                 self.patience
             ),
-            None => "every case is followed through its motion and 5 s more".to_owned(),
+            None => "every case is followed to the end of its motion and for 5 s more".to_owned(),
             Some(duration) if self.cut.is_empty() => {
                 format!("no case is followed longer than {duration} s (run.duration)")
             }

@@ -35,19 +35,20 @@ pub enum StudyError {
     Folder {
         /// Path of the folder.
         folder: PathBuf,
-        /// What is wrong with the folder and how to correct it. The phrase follows the path in the error message, as in
-        /// "is a file, not a folder; name a folder".
+        /// Description of the problem and of its remedy. The phrase follows the path in the error message, as in "is a
+        /// file, not a folder; name a folder".
         reason: String,
     },
     /// A shard is damaged.
     #[error(
-        "the shard {path} is damaged: {reason}; run the study again, which sets the shard aside and runs its chunk again",
+        "the shard {path} is damaged: {reason}; run the study again, which renames the damaged shard and runs its \
+         chunk again",
         path = path.display()
     )]
     Shard {
         /// Path of the shard.
         path: PathBuf,
-        /// What is wrong with the shard.
+        /// Description of the damage.
         reason: String,
     },
     /// There is no built-in study with this name.

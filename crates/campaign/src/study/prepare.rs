@@ -268,7 +268,8 @@ pub(super) fn runs(top: &Reader<'_>, scenario: &Scenario) -> Result<(), Scenario
         (_, Some(stack)) => {
             let Some(along) = stack.columns_along else { return Ok(()) };
             format!(
-                "a study simulates one plane, or the stack in three dimensions. Leave `base.stack.columns_along` out \
+                "a study simulates a stack in one plane or in three dimensions, but not in both planes. Leave \
+                 `base.stack.columns_along` out \
                  and make a study for each plane of this stack: one with `base.stack.view = \"transverse\"` and \
                  `base.stack.columns = {}`, the other with `base.stack.view = \"longitudinal\"` and \
                  `base.stack.columns = {along}`, shaken by the other horizontal component of each record; or set \

@@ -230,11 +230,12 @@ impl Domain {
         };
         let (from, to) = (end("from")?, end("to")?);
         if spacing == Spacing::Logarithmic && (from <= 0.0 || to <= 0.0) {
-            let message = format!("spacing \"{}\" needs both ends above zero", spacing.name());
+            let message =
+                format!("with spacing \"{}\", `from` and `to` must be above zero", spacing.name());
             return Err(reader.inconsistent("spacing", message));
         }
         if from == to {
-            return Err(reader.inconsistent("to", "`to` is the same as `from`".to_owned()));
+            return Err(reader.inconsistent("to", "`to` must differ from `from`".to_owned()));
         }
         let value = |at: u32| {
             let share = f64::from(at) / f64::from(count - 1);

@@ -209,7 +209,7 @@ impl StudyTable {
     /// Reads a table from the bytes of a Parquet file that [`StudyTable::to_parquet`] wrote.
     ///
     /// # Errors
-    /// If the bytes are not those of such a file.
+    /// If the bytes are not the content of such a file.
     pub fn from_parquet(bytes: Vec<u8>) -> Result<Self, StudyError> {
         Ok(shard::from_bytes(bytes, "")?.0)
     }

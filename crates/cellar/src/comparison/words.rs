@@ -8,7 +8,7 @@ use crate::plan::liters;
 use crate::words::plural;
 
 /// Returns the main result in one sentence or two. For two layouts, it states what changes from the first to the
-/// second; for more, which layout loses the smallest share of its barrels.
+/// second; for more layouts, it states which of them loses the smallest share of its barrels.
 pub fn headline(found: &CellarComparison) -> String {
     if !found.unfinished.is_empty() {
         let done = found.layouts.len();
@@ -146,7 +146,7 @@ fn words_of(difference: f64, [less, more, same]: [&str; 3]) -> String {
 }
 
 /// Returns the confidence interval of a change, multiplied by `scale`, and the number of pairs in words. If the
-/// interval includes zero, the words state that the pairs prove no difference.
+/// interval includes zero, the words state that the difference is not significant.
 fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutPair) -> String {
     let pairs = variants(pair);
     let Some([low, high]) = change.interval.map(|both| both.map(|bound| scale * bound)) else {
@@ -159,10 +159,9 @@ fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutP
         format!("{}, {pairs}", bounds(-high, -low))
     } else {
         format!(
-            "95 % interval {} {less} to {} {more}, {pairs}, which {} no difference",
+            "95 % interval {} {less} to {} {more}, {pairs}: the difference is not significant",
             amount(-low),
-            amount(high),
-            if pair.variants == 1 { "proves" } else { "prove" }
+            amount(high)
         )
     }
 }

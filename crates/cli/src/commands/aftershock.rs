@@ -42,7 +42,7 @@ pub(crate) struct AftershockArgs {
     tables: crate::tables::TableArgs,
     #[command(flatten)]
     language: LanguageArgs,
-    /// Print one JSON document in place of text; for a single factor, it is the document of `run`.
+    /// Print one JSON document in place of text; with a single factor, the same document as `run`.
     #[arg(long)]
     json: bool,
     /// Show no progress; warnings are still printed.

@@ -77,10 +77,10 @@ enum Test {
     /// around those of the scenario. Each simulation is weighted by its agreement with the
     /// observations.
     ///
-    /// A TOML file states shares instead: how many of the stacks or barrels fell in an earthquake,
-    /// with source and uncertainty. The scenario is that of such a stack, with the motion of the
-    /// nearest station; it is simulated at every height that a statement names. The recipe
-    /// "From what fell in an earthquake" of the guide shows such a file.
+    /// Instead of a table of tests, a TOML file can state shares: how many of the stacks or barrels
+    /// fell in an earthquake, with source and uncertainty. The scenario must then describe such a
+    /// stack, with the motion of the nearest station; the stack is simulated at every height that a
+    /// statement names. The recipe "From what fell in an earthquake" of the guide shows such a file.
     Collapse(CollapseArgs),
 }
 
@@ -114,7 +114,7 @@ enum Pair {
 /// The pair of bodies to which the result applies.
 #[derive(Debug, clap::Args)]
 struct PairArgs {
-    /// Pair of bodies that was tested; the printed lines to paste into a scenario name this pair.
+    /// Pair of bodies that was tested; the lines printed for use in a scenario apply to this pair.
     #[arg(long, value_enum, default_value = "barrel-rack")]
     interface: Pair,
 }
@@ -145,8 +145,8 @@ struct StiffnessArgs {
     /// Number of seats or contact nodes that share the force; k applies to one seat or node.
     #[arg(long, visible_alias = "seats", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     nodes: u32,
-    /// Stack that was tapped, in the plane in which it swayed: a scenario file (TOML), or the name
-    /// of a built-in scenario.
+    /// Scenario file (TOML) or name of a built-in scenario: the stack that was tapped, in the plane
+    /// in which the stack swayed.
     #[arg(long)]
     scenario: Option<String>,
     /// Change a value of the scenario of the tapped stack, such as stack.levels=2; may be repeated.

@@ -53,7 +53,7 @@ pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCod
     Err(first.into())
 }
 
-/// Lets a stack of each number of levels settle without the motion, and prints whether and how it stands.
+/// Lets a stack of each number of levels settle without the motion, and prints its state at rest.
 fn stands(cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Result<()> {
     for model in &cellar.models {
         let found =
@@ -170,12 +170,14 @@ fn run_part(args: &RunArgs, cellar: &Cellar, part: Part, keep: &Path) -> anyhow:
     crate::interrupt::finished();
     let Part { part, of: parts } = part;
     printer::lines([format!(
-        "part {part} of {parts}: {done} of {of} variants are in {}; when all parts are done, the same command without --part gathers them",
+        "part {part} of {parts}: {done} of {of} variants are in {}; when all parts are done, run the same command \
+         without --part to combine them",
         keep.display()
     )])?;
     if failed > 0 {
         printer::warning(&format!(
-            "{failed} of the {of} variants failed, and their results are not kept: the command that gathers the parts runs these variants again, and does not count those that fail"
+            "{failed} of the {of} variants failed, and their results are not kept: the command that combines the \
+             parts runs these variants again, and does not count those that fail again"
         ));
     }
     Ok(ExitCode::SUCCESS)

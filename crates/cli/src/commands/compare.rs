@@ -38,8 +38,8 @@ pub(crate) struct CompareArgs {
     /// Add a run of the first scenario in which this value is changed; may be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     against: Vec<String>,
-    /// Add runs of the first cellar with the usual changes, as far as they fit: wider spacing, all levels strapped
-    /// together, stops under every rack, one level less, every stack turned by 90°.
+    /// Add runs of the first cellar with the usual changes, as far as they can be made: wider spacing, all levels
+    /// strapped together, stops under every rack, one level less, every stack turned by 90°.
     #[arg(long)]
     pub(super) usual: bool,
     /// Change a value in all runs, such as run.duration="20 s"; may be repeated.
@@ -227,7 +227,7 @@ fn alone(
 fn requested(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
     let with = |scenario: &String, more: Option<&String>| ScenarioArgs {
         scenario: scenario.clone(),
-        // The changes of a single run apply after those of all runs.
+        // The change of a single run replaces the change of all runs to the same path.
         set: args
             .set
             .iter()

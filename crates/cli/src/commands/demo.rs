@@ -28,7 +28,7 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
         answer.files(args.language.of()).and_then(|files| folder.write_files(&files))?;
         let shows = format!("{} shows the result so far", folder.report().display());
         printer::note(&format!(
-            "{shows}; if the stack falls, changes that would keep it up are now searched for"
+            "{shows}; if the stack falls, the program now searches for changes that would keep it up"
         ));
         crate::interrupt::keeps(shows);
         let command = Command::of(&typed, args.variants);
@@ -46,7 +46,7 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     Ok(super::run::status(&answer))
 }
 
-/// Returns the given changes, preceded by those of the demo.
+/// Returns the given changes, preceded by the changes of the demo.
 ///
 /// Unless a given change sets `stack.view`, the demo is three-dimensional. It then has fewer variants than other runs,
 /// unless a given change sets their number, because a three-dimensional variant takes several times as long as one in

@@ -128,7 +128,8 @@ fn layouts(args: &CompareArgs, given: Vec<Named>) -> anyhow::Result<(Vec<Named>,
     if runs.len() == 1 {
         let reasons = left_out.iter().map(|one| format!("{}: {}", one.name, one.reason));
         bail!(
-            "none of the changes that --usual adds can be applied to this cellar; {}",
+            "none of the changes that --usual adds can be applied to this cellar ({}); use --against for another \
+             change",
             reasons.collect::<Vec<_>>().join("; ")
         );
     }

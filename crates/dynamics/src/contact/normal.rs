@@ -46,11 +46,11 @@ pub enum NormalLaw<R = f64> {
     /// fₙ = k δ^(3/2) (1 + e² + (1 − e²) s) / 2      s = δ̇ / √(δ̇² + v²)
     /// ```
     ///
-    /// On approach the force is that of the spring. On separation the force is e² times that of the spring, so the
+    /// On approach, the force is the spring force. On separation, the force is e² times the spring force, so the
     /// fraction e² of the energy is returned. These are the loading and unloading branches of Walton and Braun (1986),
-    /// connected by a smooth transition at penetration rates of about `v`, so the law needs no history. At lower speeds
-    /// the force is that of a spring and a damper, so bodies come to rest. The spring stiffens as between round bodies
-    /// (Hertz), so the contact of a light body at rest is soft, and a heavy body is stopped within millimeters.
+    /// connected by a smooth transition at penetration rates of about `v`, so the law needs no history. At lower
+    /// speeds, a spring and a damper act, so bodies come to rest. The spring stiffens as between round bodies (Hertz),
+    /// so the contact of a light body at rest is soft, and a heavy body is stopped within millimeters.
     Rebound {
         /// Stiffness `k` (N/m^1.5).
         stiffness: R,

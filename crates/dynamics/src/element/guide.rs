@@ -82,7 +82,7 @@ impl<S: Space> Guide<S> {
     }
 
     /// Returns the sum of `free` and `stop` for a guide with stops, and `free` for a guide without stops. `free` is the
-    /// stiffness or damping of the guide itself, and `stop` that of the stops.
+    /// stiffness or damping of the guide itself, and `stop` is the stiffness or damping of the stops.
     fn with_stops(&self, free: S::Real, stop: S::Real) -> S::Real {
         free + S::Real::select(self.gap.is_finite_mask(), stop, S::Real::zero())
     }

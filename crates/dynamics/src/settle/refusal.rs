@@ -88,7 +88,9 @@ pub enum Lack {
     #[error("it is pushed out of place")]
     Place,
     /// The maximum number of steps was reached before the forces balanced, but the body stays in place.
-    #[error("after {steps} steps, its residual acceleration is still {unbalanced:.0e} of gravity")]
+    #[error(
+        "after {steps} steps, its residual acceleration is still {unbalanced:.0e} times the acceleration of gravity"
+    )]
     Time {
         /// Number of steps taken.
         steps: u64,

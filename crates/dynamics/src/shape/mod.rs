@@ -132,8 +132,8 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
     fn nearest(&self, point: S::Vector, slack: S::Real) -> Nearest<S>;
 
     /// Returns the piece on which a boundary point of another body bears. For a point inside the core, this is the
-    /// nearest piece that the [`Facing`] range permits. For all other points, and where the range permits no piece, it
-    /// is `nearest`.
+    /// nearest piece that the [`Facing`] range permits. For all other points, and where the range permits no piece,
+    /// the result is `nearest`.
     ///
     /// A point inside does not always press into the nearest piece: a corner of a box that stands flush on an equal box
     /// lies on a side of the lower box, but presses on its top. So the result depends on the outward normals of the

@@ -106,7 +106,7 @@ impl<R: Real> Polygon<R> {
         if let Some(over) = self.over_one_side(point) {
             return over;
         }
-        // Inside: the nearest side decides. Outside: the nearest point of any side.
+        // For a point inside, the nearest side decides; for a point outside, the nearest point of any side.
         let mut deepest = R::splat(f64::NEG_INFINITY);
         let mut deepest_normal = Vec2::new(zero, one);
         let mut nearest_squared = R::splat(f64::INFINITY);
@@ -149,8 +149,8 @@ impl<R: Real> Polygon<R> {
     }
 
     /// Returns the gap and the nearest piece of a point (m) that lies, in all lanes, outside of one side and clear of its
-    /// ends; `None` for any other point. The result has the same bits as that of the search among all sides, since the
-    /// polygon is convex.
+    /// ends; `None` for any other point. The result is bit-identical to the result of the search among all sides,
+    /// since the polygon is convex.
     #[inline(always)]
     fn over_one_side(&self, point: Vec2<R>) -> Option<Nearest<Planar<R>>> {
         let (zero, clear) = (R::zero(), R::splat(CLEAR));

@@ -23,7 +23,7 @@ impl<R: Real> Block<R> {
     }
 
     /// Returns the signed distance (m) of a point (m) from the surface, and the surface normal. Inside the core, both
-    /// are those of the nearest face.
+    /// refer to the nearest face.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));

@@ -48,7 +48,7 @@ const LAST_HALLEY: f64 = 1e-5;
 /// minimum.
 #[inline(always)]
 pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
-    // `inline(always)`: a closure left out of line loses the target feature.
+    // `inline(always)`, because a closure that is not inlined loses the target feature.
     let found = match hull {
         Hull::Barrel(barrel) => halley(
             middle,
@@ -90,7 +90,7 @@ pub(super) fn along_barrel<R: Real>(
         let step = first * second / (second * second - R::splat(0.5) * first * third);
         let next = (place - step).clamp_magnitude(one);
         let moved = (next - place).abs();
-        // A step that is not a number is not less than itself.
+        // A NaN is not less than or equal to itself.
         failed = failed | (!done & !step.le(step));
         place = R::select(done, place, next);
         done = done | moved.lt(R::splat(LAST_HALLEY));
@@ -144,7 +144,7 @@ fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> A
     for evaluation in 3..MOST_ALONG {
         let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
         let narrowed: f64 = high.0 - low.0;
-        // Every third time, the interval is bisected unless it has halved.
+        // Every third evaluation bisects the interval, unless the interval has halved since the last check.
         let slow = evaluation % 3 == 0 && narrowed > 0.5 * wide;
         if evaluation % 3 == 0 {
             wide = if slow { 0.5 * narrowed } else { narrowed };
@@ -225,8 +225,9 @@ impl Set<'_> {
     ///
     /// The support function is `h = R |n| − a β` on the stave and `h = l |α| + r β` on the chime. Here α and β are the
     /// components of the direction `n` along and across the axis, `l` is half the length of the core, `r` the radius of
-    /// its heads, and `R` and `a` are as in [`Barrel`]. The curvature follows from the second derivatives: that of
-    /// `|n|` is 1 in every tangential direction, and that of β is `1/β` around the axis.
+    /// its heads, and `R` and `a` are as in [`Barrel`]. The curvature follows from the second derivatives: the second
+    /// derivative of `|n|` is 1 in every tangential direction, and the second derivative of β is `1/β` around the
+    /// axis.
     fn support(&self, direction: Vec3) -> Support {
         let local = self.rotation.unapply(direction);
         let barrel = self.barrel;

@@ -21,7 +21,7 @@ pub struct Part {
 /// Creates a free body from several solids that are given in a common frame.
 ///
 /// The body frame has its origin at the center of mass and its axes along the principal axes; the pose of the body is
-/// that of the body frame in the common frame.
+/// the pose of this frame in the common frame.
 ///
 /// Every solid is a boundary of its own, so two bodies need the contact pairs of [`pairs_between`]. For bodies that are
 /// far apart, only the bounding balls are tested, and only when the list of contact elements is built.

@@ -206,7 +206,8 @@ impl Reader<'_> {
                 }
             }
             if items.is_empty() {
-                let message = format!("`{}` is an empty list", reader.path_of(name));
+                let message =
+                    format!("`{}` is an empty list; give at least one item", reader.path_of(name));
                 return Err(reader.sources.error(node.origin, Problem::Inconsistent { message }));
             }
             Ok(items.clone())
@@ -425,7 +426,7 @@ impl Reader<'_> {
         self.sources.error(node.origin, problem)
     }
 
-    /// Reads a unit or a quantity. A name alone, such as `kN`, stands for one unit, here 1 kN.
+    /// Reads a unit or a quantity. A name alone, such as `kN`, means one unit, here 1 kN.
     fn read_unit(&self, name: &str, node: &Node, dimension: Dimension) -> Result<Quantity> {
         if let Value::Text(text) = &node.value
             && !text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))

@@ -14,7 +14,7 @@ pub(super) fn is_tar(bytes: &[u8]) -> bool {
 
 /// Calls `take` with the name and the content of every file until `take` returns `false`.
 ///
-/// If the archive is truncated within a file, `take` gets `None` as the content of this file.
+/// If the archive is truncated within a file, `take` receives `None` as the content of this file.
 ///
 /// # Errors
 /// The outer result is an error if the archive is damaged; the inner result is an error if `take` returns one.

@@ -149,7 +149,7 @@ pub fn noise_corners(
 impl Record {
     /// Returns the filter corners of every channel, in order.
     ///
-    /// Both horizontal components get the overlap of their two frequency bands, so that they can be rotated
+    /// Both horizontal components are assigned the overlap of their two frequency bands, so that they can be rotated
     /// together. All channels use the earliest arrival of any channel.
     pub fn noise_corners(&self, criterion: &NoiseCriterion) -> Vec<Result<Corners, MotionError>> {
         let first = self

@@ -42,8 +42,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     })
 }
 
-/// Builds the record described by the header in the lines before `end`. The function `columns` gets the names of the
-/// channels and the largest valid value of a sample; it returns the samples of each channel, in the unit that the
+/// Builds the record described by the header in the lines before `end`. The function `columns` receives the names of
+/// the channels and the largest valid value of a sample; it returns the samples of each channel, in the unit that the
 /// header states.
 pub(super) fn described(
     source: &Source<'_>,

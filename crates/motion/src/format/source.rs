@@ -122,8 +122,8 @@ impl<'a> Source<'a> {
         field.ok_or_else(|| self.header((), format!("a value for \"{key}\""), "none"))
     }
 
-    /// Reads blocks up to the end of the file, skipping blank lines between them. `read` gets the
-    /// first line of a block and returns the line after the block.
+    /// Reads blocks up to the end of the file, skipping blank lines between them. `read` receives the first line of a
+    /// block and returns the line after the block.
     pub(crate) fn each_block(
         &self,
         mut read: impl FnMut(usize) -> Result<usize, ReadError>,

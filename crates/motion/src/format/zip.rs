@@ -57,7 +57,7 @@ fn entry(bytes: &[u8], at: usize) -> Option<(ZipEntry<'_>, usize)> {
     }
     let begin = 30 + usize::from(two(local, 26)?) + usize::from(two(local, 28)?);
     let packed = local.get(begin..)?.get(..size(head, 20)?)?;
-    // Encrypted files get the number of a compression method that does not exist.
+    // Encrypted files are assigned the number of a compression method that does not exist.
     let method = if two(head, 8)? & 1 == 1 { u16::MAX } else { two(head, 10)? };
     let sum = four(head, 16)?;
     Some((ZipEntry { name, packed, method, sum }, next))

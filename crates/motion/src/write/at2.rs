@@ -14,8 +14,8 @@ pub(crate) const NO_EVENT: &str = "EVENT NOT STATED";
 /// Placeholder for a missing station name.
 pub(crate) const NO_STATION: &str = "STATION NOT STATED";
 
-/// Length (characters) of the longest name that readers accept as a component. They take a longer name for a part of
-/// the event name.
+/// Length (characters) of the longest name that readers accept as a component. Readers interpret a longer name as a
+/// part of the event name.
 const LONGEST_NAME: usize = 12;
 
 /// Writes a record of one channel as PEER AT2, in g with eight significant digits.

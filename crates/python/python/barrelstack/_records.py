@@ -235,7 +235,9 @@ def select(
     given: tuple[float, float] | None = None
     if isinstance(target, str):
         if at is not None:
-            raise ValueError("a code spectrum has no spread, so it cannot be made conditional: omit the argument at")
+            raise ValueError(
+                "a code spectrum states no standard deviation, so it cannot be made conditional: omit the argument at"
+            )
         periods, wanted = np.array(PERIODS), target
     else:
         periods, median, deviation = (np.ascontiguousarray(one, dtype=np.float64) for one in target)

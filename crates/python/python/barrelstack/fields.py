@@ -269,8 +269,8 @@ class ElementFields(TypedDict, total=False):
     yields_at: Quantity
     """Force at which the strap yields and becomes permanently longer; if not given, the strap never yields."""
     sway_damping: Quantity
-    """Damping force on the second attachment point divided by its velocity, both perpendicular to the rod.
-    Default: 0 N s/m.
+    """Damping force on the second attachment point divided by the velocity of that point, both perpendicular to the
+    rod. Default: 0 N s/m.
     """
     axis: Quantity
     """Inclination of the axis in the first body, counterclockwise. Default: 0 deg."""
@@ -292,8 +292,8 @@ class FreeInterfaceFields(TypedDict, total=False):
     basis: Literal["node", "length", "seat"]
     """Unit for which stiffness and damping are stated: one contact node, or one meter of boundary. Default: node."""
     between: list[str]
-    """The two kinds: the first has the contact nodes, the second the surface; in three dimensions, the order does
-    not matter.
+    """The two kinds: the first kind has the contact nodes, and the second has the surface; in three dimensions,
+    the order does not matter.
     """
     damping: Quantity
     """Damping c of one seat or node, in N s/m, or of the boundary per meter of its length, in N s/m^2. Default: in
@@ -349,9 +349,9 @@ class FrictionFields(TypedDict, total=False):
     tangential_damping_ratio: Union[float, Quantity]
     """Ratio of the damping of the tangential spring to the normal damping. Default: 1.0."""
     tangential_stiffness_ratio: Union[float, Quantity]
-    """Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, friction
-    reverses sooner, but the time step must be smaller. Default: for constants per seat, the ratio in the
-    catalog: 2 on barrels and on posts, and 4 on the ground; for all other constants, 1.
+    """Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, the friction
+    force reverses over a smaller displacement, but the time step must be smaller. Default: for constants per
+    seat, the ratio in the catalog: 2 on barrels and on posts, and 4 on the ground; for all other constants, 1.
     """
     velocity: Quantity
     """Slip rate at which the friction is fully developed."""
@@ -447,9 +447,10 @@ class ImperfectionsFields(TypedDict, total=False):
     no variant. Default: false.
     """
     until: Literal["rest", "verdict", "duration"]
-    """Criterion that ends the variants; used only if `run.until` is "rest". The value "verdict" ends a variant 2 s
-    after its first loss of a seat, or when it is at rest on ground that stays below 0.02 g. The value "rest"
-    ends a variant when all bodies have come to rest. Default: verdict.
+    """Criterion that ends the runs of the variants; used only if `run.until` is "rest". The value "verdict" ends
+    such a run 2 s after the first loss of a seat; a run without such a loss ends when all bodies are at rest
+    and the ground acceleration stays below 0.02 g. The value "rest" ends such a run when all bodies have come
+    to rest. Default: verdict.
     """
     variants: int
     """Number of variants of the stack that are run in each plane, in addition to the stack as stated; 0 to run
@@ -636,9 +637,9 @@ class NodesFields(TypedDict, total=False):
     list: list["NodeFields"]
     """Nodes at chosen points."""
     rule: Literal["corners", "rolling", "exact"]
-    """Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. With
-    exact contact, every corner and arc of the convex outline touches the other body with its deepest point,
-    wherever this point lies. If both bodies have exact contact, the corners and arcs of both are tested.
+    """Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. With exact
+    contact, the contact point of every corner and arc of the convex outline is the point that lies deepest in the other
+    body. If both bodies have exact contact, the corners and arcs of both are tested for contact.
     """
     spacing: Quantity
     """Largest distance between nodes along the boundary."""
@@ -654,10 +655,10 @@ class OutcomeFields(TypedDict, total=False):
     overturning_angle: Quantity
     """The stack counts as overturned if its bottom rack is inclined by more than this angle. Default: 30 deg."""
     rack_slide_ratio: Union[float, Quantity]
-    """A rack has left the barrels below when its displacement on them exceeds this fraction of the largest
-    displacement at which they still carry it. Beyond that displacement, friction cannot hold a rack that moves
-    across the barrels on their curved sides, and a rail of a rack that moves along the barrels lies beyond
-    their ends. Default: 1.0.
+    """A rack has left the barrels below when its displacement relative to these barrels exceeds this fraction of
+    the largest displacement at which they still carry the rack. Beyond that displacement, a rack that moves
+    across the barrels rests on their curved sides, where friction cannot hold it; if a rack moves along the
+    barrels, one of its rails lies beyond their ends. Default: 1.0.
     """
     rocking_angle: Quantity
     """A level counts as tipped over if its rack is inclined by more than this angle. Default: 20 deg."""
@@ -672,8 +673,8 @@ class OverrideFields(TypedDict, total=False):
 
     column: int
     """Number of the column; 1 is at the left of a stack that is not mirrored. The columns of racks and those of
-    barrels are numbered separately. In both planes or in three dimensions, columns are counted across the
-    barrels. Default: every column of the level.
+    barrels are numbered separately. If the model is in both planes or in three dimensions, columns are counted
+    across the barrels. Default: every column of the level.
     """
     fill: Literal["full-fluid", "full-frozen", "part", "empty"]
     """Contents of this barrel, which replace the contents that apply to other barrels."""
@@ -892,9 +893,10 @@ class RunFields(TypedDict, total=False):
     stop_after_collapse: Quantity
     """Time for which the run continues after a collapse. Default: never stop early."""
     until: Literal["rest", "verdict", "duration"]
-    """Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and
-    all bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack
-    has come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. With "rest",
+    """Criterion that ends the run. "rest" ends the run when the ground is still and all bodies are at rest; after
+    a collapse, it is enough that the ground acceleration stays below 0.02 g. "verdict" ends the run 2 s after
+    the first loss of a seat; a run without such a loss ends when all bodies are at rest and the ground
+    acceleration stays below 0.02 g. "duration" ends the run when `duration` is over. With "rest",
     `imperfections.until` determines when the runs of the variants end. Default: "rest" for a stack, "duration"
     for a free scene.
     """
@@ -913,8 +915,8 @@ class ScaleFields(TypedDict, total=False):
     `sa(1.0)` (period in seconds, damping 5 %) and `sa(1.0,0.02)`.
     """
     of: Literal["component", "rotd50", "rotd100", "geomean"]
-    """Components from which `measure` is computed: the component that drives the stack, or both horizontals of the
-    record. Default: component.
+    """Components from which `measure` is computed: the component that drives the stack, or both horizontal
+    components of the record. Default: component.
     """
     pga: Quantity
     """Peak horizontal acceleration to which the motion is scaled."""
@@ -1039,8 +1041,8 @@ class SineFields(TypedDict, total=False):
     period: Quantity
     """Period; the frequency can be stated instead. Default: 1 / `frequency`."""
     ramp_cycles: Union[float, Quantity]
-    """Number of cycles over which the amplitude grows from zero at the start; it falls to zero over as many cycles
-    at the end. Default: 0.0.
+    """Number of cycles over which the amplitude grows from zero at the start; it falls to zero over the same
+    number of cycles at the end. Default: 0.0.
     """
 
 
@@ -1092,8 +1094,8 @@ class StackFields(TypedDict, total=False):
     chock: "ChockFields"
     """Chocks beside the barrels that keep them from rolling out."""
     columns: int
-    """Number of barrels per level, a multiple of the number that one rack carries. In a single plane, the barrels
-    in that plane are counted; in both planes or in three dimensions, the barrels that lie side by side.
+    """Number of barrels per level, a multiple of the number that one rack carries. If the model is in a single
+    plane, the barrels in that plane are counted; otherwise, the barrels that lie side by side are counted.
     """
     columns_along: int
     """Number of barrels per level, counted along the barrels, if the model is in both planes or in three
@@ -1234,9 +1236,8 @@ class UnknownsFields(TypedDict, total=False):
     0.35, nine in ten variants have a μ within a factor of 1.8 of the stated value. Default: 0.35.
     """
     friction_barrel_rack: Union[float, Quantity]
-    """Standard deviation of ln μ for barrels on racks only; to be stated if this friction was measured. What
-    remains after a measurement is the scatter of ln μ between pairs of a barrel and a rack. Default:
-    `friction`.
+    """Standard deviation of ln μ for barrels on racks only; to be stated if this friction was measured. After a
+    measurement, only the scatter of ln μ between pairs of a barrel and a rack remains. Default: `friction`.
     """
     friction_correlation: Union[float, Quantity]
     """Correlation of ln μ between any two pairs of materials. The default is an assumption, since nobody has

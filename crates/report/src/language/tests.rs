@@ -212,10 +212,10 @@ fn sentences_about_variants_and_changes_are_translated() {
     let translator = Translator::new(Language::Spanish.catalog().unwrap());
     for (english, spanish) in [
         (
-            "A stack of one level would have stood in all 16 variants. Two to four levels, and straps tightened to 3 \
-             or 5 kN, would not have been enough.",
-            "Una pila de un nivel habría permanecido en pie en las 16 variantes. Dos a cuatro niveles, y amarres \
-             tensados a 3 o 5 kN, no habrían bastado.",
+            "A stack of one level would have stood in all 16 variants. Neither two to four levels nor straps \
+             tightened to 3 or 5 kN would have been enough.",
+            "Una pila de un nivel habría permanecido en pie en las 16 variantes. Ni dos a cuatro niveles ni \
+             amarres tensados a 3 o 5 kN habrían bastado.",
         ),
         (
             "Two or three levels without these straps would not have been enough.",
@@ -227,17 +227,17 @@ fn sentences_about_variants_and_changes_are_translated() {
             "Amarres tensados a 1, 3 o 5 kN no habrían bastado.",
         ),
         (
-            "This measurement narrows the range, on average from 81 to 63 percentage points.",
-            "Esta medición estrecha el rango, en promedio de 81 a 63 puntos porcentuales.",
+            "On average, this measurement narrows the range from 81 to 63 percentage points.",
+            "En promedio, esta medición estrecha el rango de 81 a 63 puntos porcentuales.",
         ),
         (
-            "In all 15 variants that fall, a body first leaves its seat along the barrels.",
-            "En las 15 variantes que caen, un cuerpo deja primero su apoyo a lo largo de las barricas.",
+            "In all 15 variants that fall, the first body to lose its seat leaves it along the barrels.",
+            "En las 15 variantes que caen, el primer cuerpo que pierde su apoyo lo deja a lo largo de las barricas.",
         ),
         (
-            "In 12 of the 15 variants that fall, a body first leaves its seat across the barrels.",
-            "En 12 de las 15 variantes que caen, un cuerpo deja primero su apoyo en la dirección transversal a las \
-             barricas.",
+            "In 12 of the 15 variants that fall, the first body to lose its seat leaves it across the barrels.",
+            "En 12 de las 15 variantes que caen, el primer cuerpo que pierde su apoyo lo deja en la dirección \
+             transversal a las barricas.",
         ),
         (
             "98 % of the barrels that fall within 2 s of the first loss of a seat end up displaced mainly along the \
@@ -251,9 +251,10 @@ fn sentences_about_variants_and_changes_are_translated() {
              principalmente en la dirección transversal a las barricas.",
         ),
         (
-            "Of the barrels that fall, about as many end up displaced mainly across the barrels as mainly along them.",
-            "De las barricas que caen, aproximadamente tantas quedan desplazadas principalmente en la dirección \
-             transversal a las barricas como a lo largo de ellas.",
+            "Of the barrels that fall, about equal numbers end up displaced mainly across and mainly along the \
+             barrels.",
+            "De las barricas que caen, un número parecido queda desplazado principalmente en la dirección \
+             transversal a las barricas y principalmente a lo largo de ellas.",
         ),
         (
             "Along the barrels, all 5 variants that fall do so under their own weight, before they are shaken.",

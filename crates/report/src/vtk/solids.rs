@@ -40,7 +40,7 @@ pub struct SolidTie {
 pub struct Solids {
     /// The bodies.
     pub bodies: Vec<SolidBody>,
-    /// The straps and ties. In the files, their numbers continue those of the bodies.
+    /// The straps and ties. In the files, they are numbered after the bodies.
     pub ties: Vec<SolidTie>,
     /// Times of the frames (s).
     pub times: Vec<f64>,

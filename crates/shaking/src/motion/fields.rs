@@ -57,8 +57,8 @@ table! {
     /// Duration, as an alternative to the number of cycles.
     duration = Kind::Quantity(&[Dimension::TIME], Range::up_to(LONGEST)),
         Default::Derived("`cycles` times `period`");
-    /// Number of cycles over which the amplitude grows from zero at the start; it falls to zero over as many cycles at
-    /// the end.
+    /// Number of cycles over which the amplitude grows from zero at the start; it falls to zero over the same number
+    /// of cycles at the end.
     ramp_cycles = Kind::Number(Range::between(0.0, 1e6)), Default::Value("0.0");
     /// Direction of the motion.
     direction = Kind::Choice(names::<Direction>), Default::Value("\"horizontal\"");
@@ -139,7 +139,8 @@ table! {
     /// Value of `measure` to which the motion is scaled.
     value = Kind::Quantity(&[Dimension::ACCELERATION, Dimension::VELOCITY, Dimension::LENGTH], Range::up_to(1e4)),
         Default::Nothing;
-    /// Components from which `measure` is computed: the component that drives the stack, or both horizontals of the record.
+    /// Components from which `measure` is computed: the component that drives the stack, or both horizontal components
+    /// of the record.
     of = Kind::Choice(names::<MeasuredOn>), Default::Value("\"component\"");
     at most one of &["factor", "pga", "pgv", "measure"];
     at most one of &["factor", "pga", "pgv", "value"];

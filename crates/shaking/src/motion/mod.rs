@@ -106,8 +106,8 @@ pub struct Sine {
     pub period: f64,
     /// Number of cycles, including ramps.
     pub cycles: f64,
-    /// Number of cycles over which the amplitude grows from zero at the start; it falls to zero over as many cycles at
-    /// the end.
+    /// Number of cycles over which the amplitude grows from zero at the start; it falls to zero over the same number
+    /// of cycles at the end.
     pub ramp_cycles: f64,
     /// Direction of the ground motion.
     pub direction: Direction,

@@ -65,7 +65,7 @@ pub fn read_shock(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
     let both = matches!(scale, Scale::Measure { of, .. } if of != MeasuredOn::Component);
     if both && !matches!(source, MotionSource::Record(_)) {
         let message = format!(
-            "`{}` of both horizontal components needs a recorded motion; leave the field `of` out",
+            "`{}` can refer to both horizontal components only for a recorded motion; leave the field `of` out",
             reader.path_of("scale")
         );
         return Err(reader.inconsistent("scale", message));
@@ -96,7 +96,7 @@ fn read_scale(reader: Reader<'_>) -> Result<Scale, InputError> {
     let factor = reader.optional_number("factor")?;
     if factor == Some(0.0) {
         let message = format!(
-            "`{}` of 0 leaves no motion; for a ground at rest write `none = true` in [motion]",
+            "`{}` must not be 0; for a ground at rest write `none = true` in [motion]",
             reader.path_of("factor")
         );
         return Err(reader.inconsistent("factor", message));
@@ -186,15 +186,16 @@ fn read_sine(reader: Reader<'_>) -> Result<Sine, InputError> {
         .or(duration.map(|duration| duration / period))
         .ok_or_else(|| reader.one_of(&["cycles", "duration"]))?;
     if cycles * period > LONGEST {
-        let message =
-            format!("{cycles} cycles of {period} s last longer than {LONGEST} s; take fewer");
+        let message = format!(
+            "{cycles} cycles of {period} s last longer than {LONGEST} s; take fewer cycles"
+        );
         return Err(reader.inconsistent("cycles", message));
     }
     let ramp_cycles = reader.number("ramp_cycles")?;
     if 2.0 * ramp_cycles > cycles {
         let message = format!(
-            "`{}` is {ramp_cycles}, but the motion has {cycles} cycles, and the ramps at its two ends must fit into \
-             them; state at most {}",
+            "`{}` is {ramp_cycles}, but the ramps at both ends of the motion must fit into its {cycles} cycles; state \
+             at most {}",
             reader.path_of("ramp_cycles"),
             0.5 * cycles
         );

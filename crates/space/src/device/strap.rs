@@ -4,8 +4,8 @@
 //! A strap over a barrel runs around the barrel at the middle of its length, as in the plane across the barrels: the
 //! strap is attached at the ends of the horizontal diameter, and runs from there straight down to the rack. Where
 //! levels are tied together, every rack has one strap down the middle of each of its four sides. The straps on the left
-//! and right sides are those of the plane across the barrels; the straps on the near and far sides are those of the
-//! plane along the barrels.
+//! and right sides are the straps of the plane model across the barrels; the straps on the near and far sides are the
+//! straps of the plane model along the barrels.
 
 use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Straps, Ties, lowest};

@@ -1,6 +1,7 @@
 //! Ties of three-dimensional stacks. A tie joins the middle of one of the four sides of a rack to a neighboring rack, a
-//! wall or the ceiling. The ties on the left and right sides are those of the plane model across the barrels. The ties
-//! on the near and far sides are those of the plane model along the barrels, in which the near side is on the left.
+//! wall or the ceiling. The ties on the left and right sides are the ties of the plane model across the barrels. The
+//! ties on the near and far sides are the ties of the plane model along the barrels, in which the near side is on the
+//! left.
 
 use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Anchor, AnchorTies, Side, lowest};
@@ -35,8 +36,8 @@ pub(super) fn place(device: &AnchorTies, builder: &mut Builder<'_>) -> Result<()
     if device.to == Anchor::Neighbors && spec.racks_per_level() * spec.racks_along() < 2 {
         return Err(AssembleError::NotInSpace {
             field: "stack.tie.to",
-            reason: "\"neighbors\" ties racks side by side, but this stack has one rack on a level: set stack.columns \
-                     or stack.columns_along higher, or stack.tie.to = \"wall\""
+            reason: "\"neighbors\" ties the racks of a level to each other, but each level of this stack has only one \
+                     rack: set stack.columns or stack.columns_along higher, or stack.tie.to = \"wall\""
                 .into(),
         });
     }

@@ -108,7 +108,7 @@ pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Isolators, InputE
     let isolators = Isolators::read_fields(&reader)?;
     if isolators.path == Path::Dish && isolators.stroke > STEEPEST * isolators.dish_radius {
         let message = format!(
-            "`{}` of {} m leaves the dish, whose radius is {} m; the stroke may be {} m at most",
+            "`{}` of {} m is too long for a dish with a radius of {} m; the stroke may be {} m at most",
             reader.path_of("stroke"),
             isolators.stroke,
             isolators.dish_radius,

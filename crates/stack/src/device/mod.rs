@@ -174,13 +174,13 @@ impl Setting {
 pub struct Cost {
     /// Lower and upper bounds of the cost (US$ of 2024).
     pub dollars: [f64; 2],
-    /// Whether the bounds are per stack or per level.
+    /// Unit to which the bounds apply: a stack or a level.
     pub each: Each,
     /// Source of the bounds.
     pub source: &'static str,
 }
 
-/// What a cost is stated for: a stack or a level.
+/// Unit to which a cost applies: a stack or a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Each {
     /// The whole stack.
@@ -193,7 +193,7 @@ impl Words {
     /// Returns the candidate settings for a stack with `levels` levels, each as a description and overrides of the
     /// scenario.
     ///
-    /// Whether a setting fits the stack is checked when the scenario is read.
+    /// The reader of scenarios checks whether a setting fits the stack.
     pub fn settings(&self, levels: u32) -> Vec<(String, Vec<String>)> {
         let mut all: Vec<_> = self.candidates.iter().map(Setting::to_candidate).collect();
         if self == &strap::WORDS {
@@ -222,8 +222,7 @@ impl Words {
 /// Kind of the fields that state a number of levels or the number of a level.
 const LEVELS: Kind = Kind::Integer(0, 12);
 
-/// Returns the lowest level with a device that is installed on the top `highest` levels of a stack with `levels`
-/// levels.
+/// Returns the lowest level that has a device, if the top `highest` levels of a stack with `levels` levels have it.
 pub fn lowest(highest: u32, levels: u32) -> u32 {
     levels.saturating_sub(highest) + 1
 }
@@ -234,7 +233,7 @@ fn check_levels(reader: &Reader<'_>, device: u32, stack: u32) -> Result<(), Inpu
         return Ok(());
     }
     let path = reader.path_of("levels");
-    let message = format!("`{path}` is {device}, but the stack has only {stack} levels");
+    let message = format!("`{path}` is {device}, but the stack has only {stack} levels; lower it");
     Err(reader.inconsistent("levels", message))
 }
 

@@ -161,8 +161,8 @@ impl AnchorTies {
         let racks = spec.racks_per_level();
         if self.to == Anchor::Neighbors && racks < 2 {
             return Err(format!(
-                "stack.tie.to = \"neighbors\" ties racks side by side, but {}, each level of this stack has only one \
-                 rack: set stack.columns higher, or stack.tie.to = \"wall\"",
+                "stack.tie.to = \"neighbors\" ties the racks of a level to each other, but {}, each level of this \
+                 stack has only one rack: set stack.columns higher, or stack.tie.to = \"wall\"",
                 spec.view.words()
             ));
         }

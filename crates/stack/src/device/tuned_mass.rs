@@ -54,7 +54,8 @@ impl Tuning {
     /// Returns the tuning that minimizes the largest displacement of an undamped structure under a harmonic force.
     ///
     /// `share` is the mass ratio μ. The frequency ratio is `1/(1 + μ)`, and the damping ratio is `√(3μ/(8(1 + μ)))`
-    /// (Den Hartog 1956, section 3.3). A rocking stack is not such a structure: its period grows with the amplitude.
+    /// (Den Hartog 1956, section 3.3). A rocking stack differs from the structure of this theory: the period of the
+    /// stack grows with the amplitude.
     ///
     /// ```
     /// let tuning = barrelstack_stack::device::Tuning::den_hartog(0.05);
@@ -99,7 +100,8 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<TunedMass, InputEr
     let mass = TunedMass::read_fields(&reader)?;
     if mass.level > levels {
         let path = reader.path_of("level");
-        let message = format!("`{path}` is {}, but the stack has only {levels} levels", mass.level);
+        let message =
+            format!("`{path}` is {}, but the stack has only {levels} levels; lower it", mass.level);
         return Err(reader.inconsistent("level", message));
     }
     reader.finish();

@@ -25,7 +25,7 @@ pub(super) fn run(
     audience: &mut Audience<'_>,
 ) -> Vec<(usize, CaseResult)> {
     let width = if width.is_here() { width } else { Width::Scalar };
-    // An available width never returns `None`.
+    // The result is `None` only for a width that the machine does not have.
     width.run(InLanes { method, group, stacks, audience }).unwrap_or_default()
 }
 

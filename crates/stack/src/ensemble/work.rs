@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Resolution of the progress counters: a case simulated for its usual duration counts as this many units.
+/// Resolution of the progress counters: number of units for a case that is simulated for its usual duration.
 const PARTS: f64 = 1e6;
 
 static DONE: AtomicU64 = AtomicU64::new(0);
@@ -19,8 +19,8 @@ static EPOCH: LazyLock<Instant> = LazyLock::new(Instant::now);
 
 /// Progress of all cases of this process.
 ///
-/// The progress of a case is its simulated time divided by its usual duration, but at most 1. The usual duration is that
-/// of the motion: few cases need the time after it that they may take to come to rest.
+/// The progress of a case is its simulated time divided by its usual duration, but at most 1. The usual duration is
+/// the duration of the motion: a case may continue after the motion until its stack is at rest, but few cases do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Sum of the progress of all cases, finished or not, since the process began.

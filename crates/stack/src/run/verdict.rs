@@ -105,8 +105,8 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     })
 }
 
-/// Returns how much of the ground motion (s) was left when `run.duration` ended a run. Returns `None` if at most
-/// [`CUT`] was left, or if the run ended for another reason.
+/// Returns the duration (s) of the ground motion that was left when `run.duration` ended a run. Returns `None` if at
+/// most [`CUT`] was left, or if the run ended for another reason.
 pub fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
     let left = motion_end - time;
     (ending == Ending::Duration && left > CUT).then_some(left)

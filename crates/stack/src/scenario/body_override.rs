@@ -34,7 +34,8 @@ section! {
     /// Level, 1 at the bottom.
     level: u32 = LEVELS, Default::Required;
     /// Number of the column; 1 is at the left of a stack that is not mirrored. The columns of racks and those of
-    /// barrels are numbered separately. In both planes or in three dimensions, columns are counted across the barrels.
+    /// barrels are numbered separately. If the model is in both planes or in three dimensions, columns are counted
+    /// across the barrels.
     column: Option<u32> = COLUMNS, Default::Derived("every column of the level");
     /// Number of the row along the barrels in a three-dimensional model; 1 is nearest to the viewer. The rows of racks
     /// and those of barrels are numbered separately.
@@ -60,8 +61,8 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
     if let Some((name, _)) = only_in_space.iter().find(|(_, given)| *given && stack.space.is_none())
     {
         let message = format!(
-            "`{}` is for `stack.view = \"spatial\"`; a planar model has only one row, and no displacement out of the \
-             plane",
+            "`{}` applies only with `stack.view = \"spatial\"`; leave it out, because a planar model has only one row \
+             and no displacement out of the plane",
             reader.path_of(name)
         );
         return Err(reader.inconsistent(name, message));
@@ -81,7 +82,7 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
             && given > most
         {
             let message = format!(
-                "`{}` is {given}, but the stack has {most} {name}{} of {}s",
+                "`{}` is {given}, but the stack has only {most} {name}{} of {}s; lower it",
                 reader.path_of(name),
                 if most == 1 { "" } else { "s" },
                 body.name()
@@ -90,7 +91,10 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
         }
     }
     if body == StackBody::Rack && fill.is_some() {
-        let message = format!("`{}` is for barrels; a rack holds no wine", reader.path_of("fill"));
+        let message = format!(
+            "`{}` applies only to barrels; leave it out for a rack",
+            reader.path_of("fill")
+        );
         return Err(reader.inconsistent("fill", message));
     }
     if let Some(mass) = mass
@@ -98,7 +102,7 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
         && mass < stack.barrel.empty_mass
     {
         let message = format!(
-            "`{}` is {mass} kg, less than the {} kg of the wood",
+            "`{}` is {mass} kg, less than the {} kg of the wood; give the mass of wood and wine together",
             reader.path_of("mass"),
             stack.barrel.empty_mass
         );

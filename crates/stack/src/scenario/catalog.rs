@@ -160,19 +160,20 @@ const ON_BARRELS: Seats = Seats {
     barrel: Seat::new(3e6, 70.0, STICK_ON_BARREL),
     floor: Seat::new(1e7, 10.0, STICK_ON_FLOOR),
     post: Seat::new(1e7, 15.0, STICK_ON_POST),
-    source: "a shell of oak staves 27 mm thick under a point load beside a hoop, in series with joints that open and \
-             with the tube wall: 2.7 to 4.4 MN/m, between the 0.89 MN/m that Candia, de la Llera and Almazán (2008) \
-             measured on local barrels and racks and the 12 MN/m of a stave clamped between hoops; on floors, tubes \
-             with a gap of a fraction of a millimeter under them; restitution for a quarter of a full barrel on one \
-             seat, \
-             and for an empty rack on a floor: derived values, since nobody has measured these racks",
+    source: "derived values, since nobody has measured these racks; on barrels, the stiffness of a shell of oak staves \
+             27 mm thick under a point load beside a hoop, in series with joints that open and with the tube wall: 2.7 \
+             to 4.4 MN/m (for comparison: 0.89 MN/m was measured on local barrels and racks by Candia, de la Llera and \
+             Almazán (2008), and a stave clamped between hoops has 12 MN/m); on floors, the stiffness of tubes with a \
+             gap of a fraction of a millimeter under them; restitution for a quarter of a full barrel on one seat, and \
+             for an empty rack on a floor",
 };
 
 /// Seats of racks whose rails span from post to post and bend under their barrels.
 const ON_POSTS: Seats = Seats {
     barrel: Seat::new(6e5, 70.0, STICK_ON_BARREL),
-    source: "as for racks on barrels, in series with the 1.2 MN/m under each barrel of a rail of 60 mm square tube \
-             that spans 1.54 m from post to post; steel posts with play, on floors and on each other: derived values, since nobody has measured these racks",
+    source: "derived values, since nobody has measured these racks; the stiffness as for racks on barrels, in series \
+             with a rail that has 1.2 MN/m under each barrel (60 mm square tube, spanning 1.54 m from post to post); \
+             on floors and on each other, the stiffness of steel posts with play",
     ..ON_BARRELS
 };
 
@@ -226,8 +227,8 @@ pub const RACKS: &[CatalogRack] = &[
         rack: Rack { base: "two-barrel-feet", foot_height: 0.06, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "A rack that stands on the barrels below with feet.",
-        source: "`two-barrel` with a foot over each barrel below, as wide as the foot of the reconstructed \
-            `candia-2008`: an assumption",
+        source: "`two-barrel` with a foot over each barrel below; the foot is assumed to be as wide as the foot of the \
+                 reconstructed `candia-2008`",
     },
     CatalogRack {
         rack: Rack { base: "single-bar", mass: 35.0, contact: SeatContact::Element, ..TWO_BARREL },
@@ -260,17 +261,16 @@ pub const RACKS: &[CatalogRack] = &[
         help: "A rack that stands on the posts of the rack below.",
         source: "racks that carry load on posts at their four corners (Wines & Vines 2014, 2016); every number is an \
             assumption; the post height gives the usual level pitch; across the barrels, the posts stand clear of the \
-            barrels on both sides; along the barrels, the posts stand within the 38 in on which racks for two barrels \
-            stand",
+            barrels on both sides; along the barrels, the posts stand within 38 in, the depth of the footprint of \
+            racks for two barrels",
     },
     CatalogRack {
         rack: Rack { base: "two-barrel-inclined", incline: 3.5 * PI / 180.0, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "A rack that lies on the barrels below with straight tubes, and raises one end of every barrel.",
-        source: "`two-barrel` with the tilt of 3.5° that kept pallets on the shelves of shaken racks (Sideris, \
-            Filiatrault et al. 2010), in those tests across the shelf, here along the barrels; no maker of such a \
-            rack is \
-                 known: an assumption",
+        source: "`two-barrel` with a tilt of 3.5° along the barrels; in shaking tests (Sideris, Filiatrault et al. \
+                 2010), the same tilt across the shelf kept pallets on the shelves of racks; no maker of such a rack \
+                 is known, so the tilt is an assumption",
     },
     CatalogRack {
         rack: Rack {

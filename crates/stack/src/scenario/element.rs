@@ -56,7 +56,8 @@ choices! {
     Rod = "rod" {
         /// Distance between the attachment points at which the element carries no force.
         length: Option<f64> = LENGTH, AT_START;
-        /// Damping force on the second attachment point divided by its velocity, both perpendicular to the rod.
+        /// Damping force on the second attachment point divided by the velocity of that point, both perpendicular to
+        /// the rod.
         sway_damping: f64 = DAMPING, Default::Value("\"0 N s/m\"");
     }
     /// A spring, a damper and stops along an axis that rotates with the first body. The guide carries no force while

@@ -205,7 +205,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
     let ground = Ground::read(root.section("ground")?)?;
     let mut bodies: Vec<FreeBody> = Vec::new();
     let (mut names, mut nodes) = (BTreeSet::new(), 0.0);
-    // Column names of the bodies, and that of the ground, in tables.
+    // Column names of the bodies and of the ground in tables.
     let mut columns = BTreeSet::from(["ground".to_owned()]);
     for reader in root.sections("body")? {
         if bodies.len() == MOST_BODIES {
@@ -333,8 +333,8 @@ fn read_interfaces(
             && of_kind(bodies, &between[1]).all(|(_, shape, _)| shape.is_none())
         {
             let message = format!(
-                "nothing of the kind \"{}\" has a shape that nodes could touch; in `between`, state first the kind \
-                 that carries the nodes",
+                "no body of the kind \"{}\" has a shape that nodes could touch; in `between`, give the kind with the \
+                 nodes first",
                 between[1]
             );
             return Err(reader.inconsistent("between", message));

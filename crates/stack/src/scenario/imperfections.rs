@@ -18,9 +18,9 @@ section! {
     /// Number of variants of the stack that are run in each plane, in addition to the stack as stated; 0 to run only
     /// the stack as stated.
     variants: u32 = Kind::Integer(0, 4096), Default::Value("64");
-    /// Criterion that ends the variants; used only if `run.until` is "rest". The value "verdict" ends a variant 2 s
-    /// after its first loss of a seat; a variant without such a loss ends when all bodies are at rest and the ground
-    /// acceleration stays below 0.02 g. The value "rest" ends a variant when all bodies have come to rest.
+    /// Criterion that ends the runs of the variants; used only if `run.until` is "rest". The value "verdict" ends such
+    /// a run 2 s after the first loss of a seat; a run without such a loss ends when all bodies are at rest and the
+    /// ground acceleration stays below 0.02 g. The value "rest" ends such a run when all bodies have come to rest.
     until: Until = Kind::Choice(names::<Until>), Default::Value("\"verdict\"");
     /// Seed of the random numbers from which the imperfections and the unknown constants of the variants are drawn.
     seed: u32 = Kind::Integer(0, u32::MAX as i64), Default::Value("1");

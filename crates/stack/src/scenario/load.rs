@@ -275,8 +275,9 @@ fn read(
     finished(sources, table, Vec::new(), own)
 }
 
-/// Returns the title that the user wrote, with the stack and the motion to which it applies: those of the given table,
-/// to which no override has been applied. Returns `None` if the file has no title, or the title of a built-in scenario.
+/// Returns the title that the user wrote, with the stack and the motion to which the title applies. The stack and the
+/// motion are read from the given table, to which no override has been applied. Returns `None` if the file has no
+/// title, or the title of a built-in scenario.
 fn own_title(sources: &Sources, table: &Table) -> Option<Own> {
     let node = &table.get("title")?.node;
     let Value::Text(title) = &node.value else { return None };
@@ -343,7 +344,7 @@ pub(super) fn finished(
     Ok(scenario)
 }
 
-/// Returns `true` if the title, or the name of the file where there is no title, describes what the table contains. A
+/// Returns `true` if the title (or the name of the file, if there is no title) describes what the table contains. A
 /// title from an extended file, or from before an override, may be outdated.
 pub(super) fn title_applies(sources: &Sources, table: &Table) -> bool {
     let parts = ["run.", "record.", "imperfections.", "unknowns."];

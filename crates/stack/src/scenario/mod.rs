@@ -124,7 +124,7 @@ pub struct Scenario {
     written: Written,
 }
 
-/// What is known about the text of a scenario. Comparisons of scenarios ignore it.
+/// Information about the text of a scenario. Comparisons of scenarios ignore this information.
 #[derive(Clone, Default)]
 struct Written {
     /// The sources and the table from which the scenario was read, so that errors can state the place of a value.
@@ -170,7 +170,7 @@ pub enum Scene {
 
 impl Scenario {
     /// Replaces an outdated title by a title that is generated from the bodies and the motion. A title that the user
-    /// wrote stays, followed by what is changed.
+    /// wrote is kept, and the changes are appended to it.
     pub(crate) fn retitle(&mut self) {
         self.title = title::of(self);
     }

@@ -22,8 +22,8 @@ pub enum Nodes {
     Count(u32),
     /// One node, at the point of a circle that is deepest in the target.
     Rolling,
-    /// No nodes: every corner and arc of a convex outline touches the other body with its deepest point, wherever this
-    /// point lies.
+    /// No nodes: the contact point of every corner and arc of a convex outline is the point that lies deepest in the
+    /// other body.
     Exact,
     /// Nodes at chosen points.
     At(Vec<ChosenNode>),
@@ -57,8 +57,8 @@ table! {
     /// Contact nodes of a boundary, given by one of the fields.
     pub static NODES = "nodes";
     /// Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. With
-    /// exact contact, every corner and arc of the convex outline touches the other body with its deepest point,
-    /// wherever this point lies. If both bodies have exact contact, the corners and arcs of both are tested.
+    /// exact contact, the contact point of every corner and arc of the convex outline is the point that lies deepest in
+    /// the other body. If both bodies have exact contact, the corners and arcs of both are tested for contact.
     rule = Kind::Choice(names::<NodeRule>), Default::Nothing;
     /// Largest distance between nodes along the boundary.
     spacing = Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e3 }),

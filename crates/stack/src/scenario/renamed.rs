@@ -65,7 +65,7 @@ pub(super) fn renew(table: &mut Table, sources: &Sources) -> Result<Vec<String>,
             format!("write `{PRESENT}.{key}`")
         };
         warnings.push(format!(
-            "{place}: `{FORMER}.{key}` is a former name, which a later version will refuse: {advice} instead"
+            "{place}: `{FORMER}.{key}` is an old name, and a later version will reject it: {advice} instead"
         ));
     }
     Ok(warnings)
@@ -88,7 +88,7 @@ fn kinds(entry: &Entry, sources: &Sources) -> Result<[bool; 2], ScenarioError> {
     })
 }
 
-/// Adds an entry to a table of the scenario, unless a layer above that of the entry sets the same key.
+/// Adds an entry to a table of the scenario, unless a layer above the layer of the entry sets the same key.
 ///
 /// # Errors
 /// If the layer of the entry itself sets the same key.

@@ -84,11 +84,11 @@ section! {
     pub struct RunSpec;
     /// Settings of the run.
     pub static RUN = "run", by method of METHODS;
-    /// Criterion that ends the run. "rest" ends it when the ground is still and all bodies are at rest; after a
-    /// collapse, it is enough that the ground acceleration stays below 0.02 g. "verdict" ends it 2 s after the first
-    /// loss of a seat; a run without such a loss ends when all bodies are at rest and the ground acceleration stays
-    /// below 0.02 g. "duration" ends it when `duration` is over. With "rest",
-    /// `imperfections.until` determines when the runs of the variants end.
+    /// Criterion that ends the run. "rest" ends the run when the ground is still and all bodies are at rest; after a
+    /// collapse, it is enough that the ground acceleration stays below 0.02 g. "verdict" ends the run 2 s after the
+    /// first loss of a seat; a run without such a loss ends when all bodies are at rest and the ground acceleration
+    /// stays below 0.02 g. "duration" ends the run when `duration` is over. With "rest", `imperfections.until`
+    /// determines when the runs of the variants end.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");
     /// Maximum time for which a run continues after the end of the motion if `until` is "rest" or "verdict".
@@ -144,10 +144,10 @@ section! {
     /// A body counts as fallen when its center is more than this distance below its position at rest.
     fall_drop: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"0.2 m\"");
-    /// A rack has left the barrels below when its displacement on them exceeds this fraction of the largest
-    /// displacement at which they still carry it. Beyond that displacement, friction cannot hold a rack that moves
-    /// across the barrels on their curved sides, and a rail of a rack that moves along the barrels lies beyond their
-    /// ends.
+    /// A rack has left the barrels below when its displacement relative to these barrels exceeds this fraction of the
+    /// largest displacement at which they still carry the rack. Beyond that displacement, a rack that moves across the
+    /// barrels rests on their curved sides, where friction cannot hold it; if a rack moves along the barrels, one of
+    /// its rails lies beyond their ends.
     rack_slide_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("1.0");
     /// A level counts as tipped over if its rack is inclined by more than this angle.
     rocking_angle: f64 =

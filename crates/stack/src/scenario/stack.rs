@@ -181,8 +181,8 @@ const OWN: [Field; 9] = fields! {
     view = Kind::Choice(names::<Planes>), Default::Value("\"transverse\"");
     /// Number of levels of barrels.
     levels = LEVELS, Default::Required;
-    /// Number of barrels per level, a multiple of the number that one rack carries. In a single plane, the barrels in
-    /// that plane are counted; in both planes or in three dimensions, the barrels that lie side by side.
+    /// Number of barrels per level, a multiple of the number that one rack carries. If the model is in a single
+    /// plane, the barrels in that plane are counted; otherwise, the barrels that lie side by side are counted.
     columns = COLUMNS, Default::Required;
     /// Number of barrels per level, counted along the barrels, if the model is in both planes or in three dimensions.
     columns_along = COLUMNS,
@@ -250,8 +250,8 @@ pub(super) fn read(
     let along = reader.optional_integer("columns_along")?;
     let azimuth = reader.optional_quantity("azimuth")?;
     if planes != Planes::Spatial && azimuth.is_some() {
-        let message = "`stack.azimuth` is for `stack.view = \"spatial\"`; in a plane, `motion.component` states what \
-                       shakes the stack, and \"az:30\" is the component at an azimuth of 30 degrees"
+        let message = "`stack.azimuth` applies only with `stack.view = \"spatial\"`; in a plane, choose the direction \
+                       of shaking with `motion.component`, such as \"az:30\" for an azimuth of 30 degrees"
             .to_owned();
         return Err(reader.inconsistent("azimuth", message));
     }
@@ -263,8 +263,8 @@ pub(super) fn read(
         }
         (Planes::Transverse | Planes::Longitudinal, None) => (None, None),
         (Planes::Transverse | Planes::Longitudinal, Some(_)) => {
-            let message = "`stack.columns_along` is for `stack.view = \"both\"` and \"spatial\"; in one plane, \
-                           `stack.columns` states how many barrels stand side by side"
+            let message = "`stack.columns_along` applies only with `stack.view = \"both\"` or \"spatial\"; in one \
+                           plane, use `stack.columns` for the number of barrels side by side"
                 .to_owned();
             return Err(reader.inconsistent("columns_along", message));
         }

@@ -12,7 +12,7 @@ const WORDS: [&str; 13] = [
     "twelve",
 ];
 
-/// End of the title of a scenario whose change the other words of the title do not show.
+/// Suffix of the title of a changed scenario, used if the rest of the title does not show the change.
 pub(super) const CHANGED: &str = ", changed";
 
 /// Returns a title without the words that state that something was changed.
@@ -53,7 +53,8 @@ impl Own {
         Some(Self { title: title.to_owned(), stated: Some(words) })
     }
 
-    /// Returns the title, followed by the words that do not apply to the stated scenario and are not in the title.
+    /// Returns the title, followed by those of the given words (for the stack and for the motion) that neither apply
+    /// to the stated scenario nor occur in the title.
     fn with(&self, stands: &str, shakes: &str) -> String {
         let known = |of: fn(&(String, String)) -> &String| self.stated.as_ref().map(of);
         let mut changed = Vec::new();
@@ -82,8 +83,8 @@ fn lower(words: &str) -> String {
 }
 
 /// Returns a title that describes the stack and its motion, such as "Six barrels on three levels, elCentro.AT2". If the
-/// user wrote a title, what is changed follows it, as in "My stack: elCentro.AT2". For a free scene, returns the title
-/// of the scenario with ", changed" appended.
+/// user wrote a title, the changes are appended to it, as in "My stack: elCentro.AT2". For a free scene, returns the
+/// title of the scenario with ", changed" appended.
 pub(super) fn of(scenario: &Scenario) -> String {
     let Scene::Stack { stack, .. } = &scenario.scene else {
         return without_changed(&scenario.title).to_owned() + CHANGED;

@@ -26,8 +26,8 @@ section! {
     /// al. 2020), 0.37 to 0.45 for pallets on steel racks. The default is an assumption; with 0.35, nine in ten
     /// variants have a μ within a factor of 1.8 of the stated value.
     friction: f64 = DISPERSION, Default::Value("0.35");
-    /// Standard deviation of ln μ for barrels on racks only; to be stated if this friction was measured. What remains
-    /// after a measurement is the scatter of ln μ between pairs of a barrel and a rack.
+    /// Standard deviation of ln μ for barrels on racks only; to be stated if this friction was measured. After a
+    /// measurement, only the scatter of ln μ between pairs of a barrel and a rack remains.
     friction_barrel_rack: Option<f64> = DISPERSION, Default::Derived("`friction`");
     /// Standard deviation of ln μ on the ground; one value is drawn for racks and one for barrels. The default is an
     /// assumption: floors are washed daily, and μ of steel on concrete ranges from 0.4 in design to 0.65 in the tests

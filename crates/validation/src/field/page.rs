@@ -14,22 +14,22 @@ const HEAD: &str = "\
 
 <!-- Written by `cargo xtask field` from field/observations.toml and field/cases; change those, not this page. -->
 
-This page compares what was observed of barrel stacks in real earthquakes with what the model predicts for the same \
-stacks, and states what follows for the constants that nobody has measured.
+This page compares observations of barrel stacks in real earthquakes with the predictions of the model. It also gives \
+the likelihood of these observations for different values of the constants that nobody has measured.
 Nobody has published counts of fallen stacks by height, direction or floor for any earthquake. The observations \
-therefore give likelihoods of the constants, but no calibration.
+therefore do not suffice to calibrate the constants.
 
 ```sh
 cargo xtask field --records DIR    # runs what is not yet run, and writes this page
 cargo xtask field --page           # writes this page from the cases that are there
 ```
 
-The observations are data, in [field/observations.toml](field/observations.toml).
-The results are data as well: [shares by height](field/shares.csv), [posteriors](field/posterior.csv), \
-[likelihoods](field/likelihood.csv), and every simulated stack (`field/cases/`), from the studies in \
-`field/studies/`.
-The record of Napa College comes with the program. The records of the other stations may not be distributed with it; \
-without `--records` the command skips the hindcasts of these stations, and lists them.
+The observations are listed in [field/observations.toml](field/observations.toml).
+The results are in three tables: [shares by height](field/shares.csv), [posteriors](field/posterior.csv) and \
+[likelihoods](field/likelihood.csv). `field/cases/` has every simulated stack, and `field/studies/` the studies that \
+simulate the stacks.
+The record of Napa College comes with the program. The records of the other stations may not be distributed with the \
+program; without `--records` the command skips the hindcasts of these stations, and lists them.
 ";
 
 const METHOD: &str = "\
@@ -38,17 +38,17 @@ const METHOD: &str = "\
 **Stacks.** The stacks are those of `demo-napa`: the rack `two-barrel`, two full Bordeaux barrels side by side, one \
 rack deep, two to six levels, each stack alone on an open floor.
 In the simulations in the planes across and along the barrels, one horizontal component and the vertical component \
-act. In the three-dimensional simulations (“in space” in the tables), all three components act, and the stack is \
-turned by a random angle, because the orientation of the rows is not known.
+act. In the three-dimensional simulations (“in space” in the tables), all three components act. The stack is turned by \
+a random angle, because the orientation of the rows is not known.
 Fallen barrels are counted 4 s after the first loss of a seat.
 
 **Unknowns.** Each case has its own values of four unknowns, whose logarithms are uniformly distributed: barrel–rack \
 friction from 0.12 to 0.75, rack–ground friction from 0.30 to 0.85, stiffness of a seat from 0.7 to 13 MN/m, and a \
 factor on the motion from 0.5 to 2.
-The prior of the first three unknowns is that of `[unknowns]`: medians of 0.30, 0.50 and 3 MN/m, and standard \
-deviations of the natural logarithm of 0.35, 0.20 and 0.6, in the same order. The motion in a cellar differs from \
-that at the station by a factor with a median of 1 and a standard deviation of its logarithm of 0.3 (0.4 for Maule); \
-this is an assumption.
+The prior of the first three unknowns is lognormal, truncated to these ranges. The medians are those of the catalog: \
+0.30, 0.50 and 3 MN/m. The standard deviations of the natural logarithms are the defaults of `[unknowns]`: 0.35, 0.20 \
+and 0.6, in the same order. The motion in a cellar is assumed to differ from the motion at the station by a factor \
+with a median of 1 and a standard deviation of its logarithm of 0.3 (0.4 for Maule).
 
 **Probability of a fall.** In each study, this probability is fitted by a logistic regression of second degree in \
 the height and in the logarithms of the four unknowns. For three-dimensional simulations, the regression also \
@@ -91,15 +91,15 @@ pub(super) fn page(observations: &Statements, cases: &[FieldCases], results: &Re
          The factor on the motion is the same for both statements on Napa Barrel Care."
     );
     text.push_str(
-        "\n## What the model predicts\n\nTwo columns are untuned. “Catalog medians” is the probability of a fall \
-         with the medians of the catalog, under the unscaled record. “Prior” is the mean over the prior, with the \
-         central 90 % over the unknowns and over the uncertainty of the fit.\nThe column “given half” is tuned: it \
-         is the same mean, but over the posterior given the statement “half” (half of the barrels are on the floor). \
-         It is always shown beside the untuned values.\nAt Napa College, prior and posterior include the factor on \
-         the motion; at the other stations the record is not scaled.\n“Fall over the design” counts the cases that \
-         fall over the whole range of the unknowns, which is wider than the prior. It shows how the simulations were \
-         designed, and is not a share to be compared with a cellar.\nThe table [shares by height](field/shares.csv) \
-         also states the mean fitted probability of these cases, for comparison with their count.\n",
+        "\n## What the model predicts\n\nTwo columns are untuned. “Catalog medians” is the probability of a fall with \
+         the medians of the catalog, under the unscaled record. “Prior” is the mean of this probability over the \
+         prior, with the central 90 % interval over the unknowns and over the uncertainty of the fit.\nThe column \
+         “given half” is tuned: its mean and its interval are over the posterior given the statement “half” (half of \
+         the barrels are on the floor).\nAt Napa College, prior and posterior include the factor on the motion; at the \
+         other stations this factor is 1.\n“Fall over the design” gives how many of the simulated stacks fall. The \
+         simulations cover the whole range of the unknowns, which is wider than the prior, so this count must not be \
+         compared with the share that fell in a cellar.\nThe table [shares by height](field/shares.csv) also states \
+         the mean fitted probability of these cases, for comparison with the count.\n",
     );
     for quake in &observations.earthquake {
         shares(&mut text, quake, results);
@@ -128,7 +128,7 @@ fn of_value(range: &Range) -> String {
 fn observed(text: &mut String, quake: &Earthquake) {
     let _ = write!(
         text,
-        "\n### {}\n\n{}\n{}\n\n| observed | source | read as, or why it is not used |\n| :--- | :--- | :--- |\n",
+        "\n### {}\n\n{}\n{}\n\n| observed | source | how it is used, or why it is not used |\n| :--- | :--- | :--- |\n",
         quake.name, quake.about, quake.place
     );
     for one in &quake.observation {
@@ -198,7 +198,10 @@ fn place(study: &str) -> String {
 
 fn posterior(text: &mut String, results: &Results) {
     text.push_str(
-        "\n## Friction and stiffness given the observations\n\nEach cell gives the median and the central 90 %. The first row is the prior, without any observation.\n\n| given | friction barrel–rack | friction rack–ground | stiffness of a seat (MN/m) | factor on the motion | effective draws |\n| :--- | :--- | :--- | :--- | :--- | ---: |\n",
+        "\n## Friction and stiffness given the observations\n\nEach cell gives the median and the central 90 % \
+         interval. The first row is the prior, without any observation.\n\n| given | friction barrel–rack | friction \
+         rack–ground | stiffness of a seat (MN/m) | factor on the motion | effective draws |\n| :--- | :--- | :--- | \
+         :--- | :--- | ---: |\n",
     );
     for one in &results.posteriors {
         let cells = one.unknowns.each_ref().map(of_value);
@@ -209,11 +212,12 @@ fn posterior(text: &mut String, results: &Results) {
         };
         let _ = writeln!(text, "| {given} | {} | {:.0} |", cells.join(" | "), one.effective);
     }
-    text.push_str("\nIn the row “maule”, the factor on the motion is that at Curicó.\nThe effective number of draws \
-                   is (Σ L)² / Σ L²; if a statement gave no information, it would equal the number of all \
+    text.push_str("\nIn the row “maule”, the factor is on the motion at Curicó.\nThe effective number of draws is (Σ \
+                   L)² / Σ L²; if a statement gave no information, this number would equal the number of all \
                    draws.\n\n![Share of barrels on the floor against friction, and friction before and after the \
-                   observations](field.svg)\n\nThe next tables give the likelihood of each statement if one unknown \
-                   lies in a bin, averaged over all other unknowns (the largest possible likelihood is 1):\n\n");
+                   observations](field.svg)\n\nEach of the next tables gives the likelihood of each statement for \
+                   several ranges of one unknown, averaged over all other unknowns (the largest possible likelihood is \
+                   1):\n\n");
     let edges: [(usize, &str, &[f64]); 3] = [
         (0, "friction barrel–rack", &FRICTION),
         (1, "friction rack–ground", &GROUND),
@@ -268,9 +272,9 @@ fn along(cases: &[FieldCases], study: &str) -> (u32, u32) {
 
 fn direction(text: &mut String, cases: &[FieldCases]) {
     text.push_str("\n## Direction\n\nThe table is for the three-dimensional simulations, in which the stacks are \
-                   turned by random angles. Of all stacks that fall, it counts those whose first body leaves its \
-                   seat along the barrels:\n\n| station | along the barrels | share, 95 % | first mode (cases) |\n| \
-                   :--- | ---: | :--- | :--- |\n");
+                   turned by random angles. Of all stacks that fall, the table counts those in which the first body \
+                   that leaves its seat does so in the direction along the barrels:\n\n| station | along the barrels | \
+                   share, 95 % | first mode (cases) |\n| :--- | ---: | :--- | :--- |\n");
     for (study, name) in
         [("south-napa-space", "Napa College"), ("curico-space", "Curicó"), ("waiau-space", "Waiau")]
     {
@@ -293,11 +297,11 @@ fn direction(text: &mut String, cases: &[FieldCases]) {
         );
     }
     text.push_str("\nThe statement “Racks slid off the ends of the barrels below” names this direction, and most \
-                   stacks of the model fall in this direction. Since nobody counted the cases, no likelihood is \
-                   given.\nThe collapse mode agrees less well. At Napa College, the first body that leaves its seat \
-                   in the model is more often a barrel (“ejection”) than a rack; no report mentions this. However, a \
-                   barrel on a leaning rack counts as fallen once it is low enough, so the distinction between the \
-                   two modes is a convention (see [space.md](space.md)).\n");
+                   stacks of the model fall in this direction. Since nobody counted the racks that slid off, no \
+                   likelihood is given.\nThe collapse mode agrees less well. At Napa College, the first body that \
+                   leaves its seat in the model is more often a barrel (“ejection”) than a rack; no report mentions \
+                   this. However, a barrel on a leaning rack counts as fallen once it is low enough, so the \
+                   distinction between the two modes is a convention (see [space.md](space.md)).\n");
 }
 
 fn share<'a>(results: &'a Results, study: &str, levels: usize) -> Option<&'a Share> {
@@ -318,9 +322,9 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     if let Some((prior, posterior)) = range("half") {
         let _ = writeln!(
             text,
-            "- **South Napa.** Half of 18,000 barrels were on the floor. The untuned model predicts {} of the \
-             barrels on the floor. Conditioned on this observation (“given half”), it predicts {}. Here and below, \
-             the numbers in parentheses are the central 90 % over the unknowns.",
+            "- **South Napa.** Half of 18,000 barrels were on the floor. The untuned model predicts {} of the barrels \
+             on the floor. If it is conditioned on this observation (“given half”), the model predicts {}. Here and \
+             below, the numbers in parentheses are the central 90 % interval over the unknowns.",
             of_share(prior),
             of_share(posterior)
         );
@@ -356,17 +360,19 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     if let Some((prior, _)) = range("posts") {
         let _ = writeln!(
             text,
-            "- **Racks on posts.** Stacks whose racks stand on each other with posts lost next to nothing. The \
-             model, with a rack that was not tuned to this observation, predicts that {} of such stacks fall.",
+            "- **Racks on posts.** According to the reports, stacks whose racks stand on posts on the rack below lost \
+             next to nothing. The model, with a rack that was not tuned to this observation, predicts that {} of such \
+             stacks fall.",
             of_share(prior)
         );
     }
     if let (Some(before), Some(after)) = (results.given("prior"), results.given("half")) {
         let _ = writeln!(
             text,
-            "- **What follows from the fall of half of the barrels.** This observation hardly changes the unknowns. \
-             The factor on the motion changes from {} to {}. The mean likelihood of the observation is {} for a \
-             barrel–rack friction between 0.12 and 0.18, and {} for a friction between 0.25 and 0.35.",
+            "- **What follows from the fall of half of the barrels.** This observation hardly changes the \
+             distributions of the unknowns. The median of the factor on the motion changes from {} to {}. The mean \
+             likelihood of the observation is {} for a barrel–rack friction between 0.12 and 0.18, and {} for a \
+             friction between 0.25 and 0.35.",
             of_value(&before.unknowns[3]),
             of_value(&after.unknowns[3]),
             likelihood(results, "half", 0.12),
@@ -409,8 +415,8 @@ fn far(cases: &[FieldCases]) -> String {
         .map(|case| {
             let [friction, _, stiffness, factor] = case.unknowns;
             format!(
-                "{} levels with a friction of {friction:.2} and seats of {stiffness:.2} MN/m, under {factor:.1} times \
-                 the record",
+                "{} levels with a barrel–rack friction of {friction:.2} and seats of {stiffness:.2} MN/m, under \
+                 {factor:.1} times the record",
                 case.levels
             )
         })
@@ -435,12 +441,12 @@ friction, and at least the bottom level of a fallen stack remains standing. Abou
 on the floor with almost any constants. Counts of fallen stacks of two and three levels would narrow the ranges of \
 the constants, because the friction decides whether such stacks fall. Nobody has published such counts.
 - **Why half fell and half did not.** In the model this depends on the motion in the cellar and on the direction of \
-the rows, neither of which is known. Heights by room, the direction of the rows and a record inside the building \
-would reveal more than any test of friction.
+the rows, neither of which is known. The heights of the stacks in each room, the direction of the rows and a record \
+inside the building would explain more than any test of friction.
 - **The smaller room and the rest of the cellar.** One set of constants explains both only if the height or the \
-direction of the stacks in the smaller room was different. Stacks that knock others over would also explain both, \
-but are not simulated: each stack stands alone on an open floor, without neighbors, walls or aisles. The model error \
-of 0.10, which is meant to allow for this, is a guess.
+direction of the stacks in the smaller room was different. Stacks that knock other stacks over would also explain \
+both, but such impacts are not simulated: each stack stands alone on an open floor, without neighbors, walls or \
+aisles. The model error of 0.10, which is meant to allow for this, is a guess.
 - **Empty barrels.** Many barrels were empty in August 2014 (Press Democrat 2014, above). In the model all are full.
 - **Long motions.** Under both records of Maule, racks walk until they fall off, and the first loss of a seat occurs \
 after 30 to 50 s. If the stacks in Chile were of the simulated kind, nearly all stacks near Curicó must have fallen, \
@@ -451,13 +457,13 @@ stacks of six levels fell more often than stacks of four has not been published.
 - **Posts.** Racks on posts stand in the model as they did in the earthquake, but no number supports the words “next \
 to nothing”, and the posts of the model are an assumption.
 
-The statements are weak, so they can contradict the model only if it is far off. They do not contradict it; more \
-cannot be concluded.
+The statements are so vague that they can contradict the model only if its errors are large. They do not contradict \
+the model, and nothing more can be concluded.
 ";
 
 const ELSEWHERE: &str = "\n## Earthquakes and records without a hindcast
 
-| record or earthquake | nearest wine country | why there is none |
+| record or earthquake | nearest wine country | why there is no hindcast |
 | :--- | :--- | :--- |
 | San Simeon 2003 | Paso Robles | close to 20 wineries lost stacks, but no record is at hand |
 | Yountville 2000 | Napa | accelerations are published, but neither a record nor what happened to stacks |

@@ -2,15 +2,15 @@
 //!
 //! The search does not depend on how variants are run, so whole searches can be simulated in tests.
 //!
-//! Variants are run in blocks, those that are most likely to fall first: those that fell with most
-//! of the changes tried before, then those that fell earliest without a change. A change is rejected
-//! after the first block that brings it above the admissible number of failures among all variants,
-//! so the order does not affect which changes suffice, only how many runs a rejected change takes.
-//! The failure share of a rejected change is unknown, since the counted variants are a biased
-//! sample. A pretension whose first block is not rejected is not run further if looser straps suffice; whether it
-//! suffices is then not known. If all variants of a change were counted, its failure share has a confidence interval.
-//! These intervals hold simultaneously for all changes and planes of the search (Bonferroni), so
-//! choosing among the changes does not invalidate them.
+//! Variants are run in blocks, the variants that are most likely to fall first: variants that fell with most of the
+//! changes tried before, then variants that fell earliest without a change. A change is rejected after the first block
+//! with which its failures exceed the number that is admissible among all variants. The order therefore does not
+//! affect which changes suffice, but only the number of runs until a change is rejected. The failure share of a
+//! rejected change is unknown, since the counted variants are a biased sample. If looser straps suffice, a pretension
+//! that was not rejected after its first block is not run further; it is then unknown whether this pretension
+//! suffices. If all variants of a change were counted, its failure share has a confidence interval. These intervals
+//! hold simultaneously for all changes and planes of the search (Bonferroni), so choosing among the changes does not
+//! invalidate them.
 
 use std::cmp::Reverse;
 use std::ops::{ControlFlow, Range};
@@ -35,8 +35,8 @@ pub(super) struct Plan {
     pub(super) heights: usize,
     /// Number of strap pretensions. In the plan, they follow the changes of height, from loose to tight.
     pub(super) straps: usize,
-    /// Indices of the variants, those that fell earliest without a change first; index 0 is the variant with the number
-    /// 1. All of them are simulated for each change that suffices.
+    /// Indices of the variants, those that fell earliest without a change first; index 0 is variant 1.
+    /// All of these variants are simulated for each change that suffices.
     pub(super) order: Vec<u32>,
     /// Number of variants in the first block of a change. If that number could not reject a change, the block has as
     /// many variants as are needed to reject it.
@@ -166,7 +166,8 @@ pub(super) struct Found {
     pub(super) complete: bool,
 }
 
-/// Whether a variant collapses. A variant without a verdict is `None` and also counts as a failure.
+/// Verdict on a variant: `true` if the variant collapses. A variant without a verdict is `None` and also counts as a
+/// failure.
 type Verdict = Option<bool>;
 
 /// For each plane, the verdict of each variant.
@@ -318,7 +319,7 @@ mod tests {
             let mut random = Random::new(u64::from(seed) + 1);
             let mut chances: Vec<[f64; 2]> =
                 (0..plan.changes()).map(|_| [chance(&mut random), chance(&mut random)]).collect();
-            // Lower stacks and tighter straps fail less.
+            // Lower stacks and tighter straps fail less often.
             for part in [0..plan.heights, plan.heights..plan.changes()] {
                 chances[part].sort_by(|a, b| b[0].max(b[1]).total_cmp(&a[0].max(a[1])));
             }

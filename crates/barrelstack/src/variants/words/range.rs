@@ -49,8 +49,8 @@ pub fn measure(spread: &Spread) -> Option<String> {
     let [low, high] = spread.range?;
     let (one, left) = spread.worth_measuring()?;
     Some(format!(
-        "To narrow the range of the share of stacks that fall, measure the {}: {}. This measurement narrows the range, \
-         on average from {:.0} to {:.0} percentage points.",
+        "To narrow the range of the share of stacks that fall, measure the {}: {}. On average, this measurement \
+         narrows the range from {:.0} to {:.0} percentage points.",
         one.name,
         one.test()?,
         100.0 * (high - low),

@@ -66,7 +66,7 @@ pub(super) fn fragility(
 ) -> String {
     let names: Vec<&str> = limits.iter().map(|(name, _)| name.as_str()).collect();
     // Outside of this range, OpenQuake keeps the probability constant. The range extends to probabilities of 5e-5 and
-    // 1 - 5e-5, so that this changes a probability by at most 5e-5.
+    // 1 - 5e-5, so that the constant value is wrong by at most 5e-5.
     let reaches = |p: f64| limits.iter().map(move |(_, curve)| curve.intensity(p));
     let first = reaches(5e-5).fold(imls[0], f64::min);
     let last = reaches(1.0 - 5e-5).fold(imls[imls.len() - 1], f64::max);

@@ -29,7 +29,7 @@ pub(super) struct Input {
     /// records in them.
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
-    /// Join several files, each of which is a part of one long record and overlaps the next.
+    /// Join several files into one long record; each file must overlap the next.
     #[arg(long)]
     pub(super) join: bool,
     /// Combine the components of several files even if they differ in station, sensor, event or
@@ -48,7 +48,7 @@ pub(super) struct Input {
     #[arg(long, value_name = "[CHANNEL=]NUMBER")]
     sensitivity: Vec<String>,
     /// `StationXML` file with the sensitivity and direction of each channel, or a folder of such
-    /// files; by default, .xml files beside a file in counts are used.
+    /// files; by default, the .xml files in the folder of a file in counts are used.
     #[arg(long, value_name = "PATH")]
     station_xml: Option<PathBuf>,
     /// Quantity recorded in SEED and SAC files of instruments other than accelerometers; this

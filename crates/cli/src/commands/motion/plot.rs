@@ -154,7 +154,8 @@ fn formats(args: &PlotArgs) -> Vec<Format> {
     format_of(&args.output).map_or_else(|| args.formats.formats(), |format| vec![format])
 }
 
-/// Returns the extensions of the files that are written for each figure: those of its formats, and that of CSV.
+/// Returns the extensions of the files that are written for each figure: the extensions of its formats, and the
+/// extension of CSV.
 fn endings(args: &PlotArgs) -> impl Iterator<Item = &'static str> {
     formats(args).into_iter().map(Format::extension).chain(["csv"])
 }

@@ -17,7 +17,7 @@ pub(super) struct ScaleArgs {
     input: Input,
     #[command(flatten)]
     choice: Choice,
-    /// Scale until an intensity measure of one component has a value, such as "pgv=60 cm/s",
+    /// Scale the motion to a value of an intensity measure of one component, such as "pgv=60 cm/s",
     /// "pga=0.4 g", "arias=2 m/s", "sa(1.0)=0.5 g" (period in s, damping 5 %) or "sa(1.0,0.02)=0.5
     /// g".
     #[arg(long, value_name = "MEASURE=VALUE", conflicts_with = "factor")]

@@ -31,8 +31,8 @@ pub(super) struct SpectrumArgs {
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     damping: Vec<String>,
     /// Periods separated by commas, in seconds or each with its own unit, such as "100 ms,0.2,1"; a
-    /// period of 0 stands for the ground itself. By default, 16 periods are printed and 121 are
-    /// written.
+    /// period of 0 gives the peak ground acceleration. By default, 16 periods are printed and 121
+    /// are written.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     periods: Vec<String>,
     #[arg(

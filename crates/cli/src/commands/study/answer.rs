@@ -88,7 +88,7 @@ fn sorted(counts: &BTreeMap<String, usize>) -> Vec<(&str, usize)> {
 }
 
 /// Describes the number of collapses. The share of collapses is stated only if the cases are a sample. In adaptive
-/// designs they are not, because levels are chosen on the basis of earlier results.
+/// designs, the cases are not a sample, because levels are chosen on the basis of earlier results.
 fn collapse(tally: &Tally, provenance: &Provenance) -> Option<String> {
     let share = tally.collapse()?;
     let share =

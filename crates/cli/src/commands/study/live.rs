@@ -59,7 +59,8 @@ impl Waiting {
         drop(state);
         if let Some(Holder { who, age }) = holder(&self.folder, chunk) {
             printer::warning(&format!(
-                "waiting for chunk {chunk}, which {who} has held for {}; if that process is suspended or hangs, continue it (kill -CONT) or end it, so that another process can take its chunk",
+                "waiting for chunk {chunk}, which {who} claimed {} ago; if that process is suspended or hangs, resume \
+                 it (kill -CONT) or end it, so that another process can run the chunk",
                 age_in_words(age)
             ));
         }

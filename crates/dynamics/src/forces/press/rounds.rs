@@ -79,7 +79,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
                 let past = toward.dot(*limit);
                 deepest = deepest & if round.takes_limit { past.le(zero) } else { past.lt(zero) };
             }
-            // A side that the piece does not face bears nothing, however near it is.
+            // A side that the piece does not face carries no load, however near it is.
             let [a, b] = round.limits;
             let most = S::Real::splat(FACES);
             let faces = toward.dot(a).le(most) & toward.dot(b).le(most);

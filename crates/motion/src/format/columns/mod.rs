@@ -448,7 +448,7 @@ fn counted(
             line,
             format!("{stated} values as stated here"),
             format!("{found}"),
-            "the header belongs to another file, or the numbers to several components; get the file \
+            "the header belongs to another file, or the numbers are those of several components; get the file \
              again from its source",
         ));
     }

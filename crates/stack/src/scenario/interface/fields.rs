@@ -208,8 +208,8 @@ pub static FREE_INTERFACE: Section = Section {
             "between",
             Kind::Pair,
             Default::Required,
-            "The two kinds: the first has the contact nodes, the second the surface; in three dimensions, the order \
-             does not matter.",
+            "The two kinds: the first kind has the contact nodes, and the second has the surface; in three dimensions, \
+             the order does not matter.",
         ),
         Field::new(
             "within_groups",
@@ -246,8 +246,8 @@ table! {
         "coulomb" with [COEFFICIENT_FIELD] {
             /// Static coefficient of friction, not below the kinetic one.
             static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("the kinetic coefficient");
-            /// Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, friction
-            /// reverses sooner, but the time step must be smaller.
+            /// Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, the
+            /// friction force reverses over a smaller displacement, but the time step must be smaller.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
                 Default::Derived("for constants per seat, the ratio in the catalog: 2 on barrels and on posts, and 4 on \
                     the ground; for all other constants, 1");

@@ -54,8 +54,8 @@ impl Inner {
     }
 }
 
-/// What the journal states about a record: the fingerprint of the files of the record, `true` if the record was
-/// measured, and the position (bytes) of the last journal line about the record.
+/// Data of the journal about a record: the fingerprint of the files of the record, `true` if the record was measured,
+/// and the position (bytes) of the last journal line about the record.
 #[derive(Clone, Copy)]
 struct Line {
     hash: u64,

@@ -93,7 +93,7 @@ pub(super) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// Creates a batch that only measures records. The periods of the spectra are those in `folder`.
+    /// Creates a batch that only measures records. The spectra have the periods that are stated in `folder`.
     pub(super) fn new(
         input: &'a Input,
         out: &'a Path,
@@ -113,7 +113,7 @@ pub(super) struct Worked {
 }
 
 impl Worked {
-    /// Wraps a record as read. Before it is measured, it is processed as a scenario processes it by default
+    /// Wraps a record as read. Before the record is measured, it is processed like a record in a scenario by default
     /// ([`Chain::Default`]).
     pub(super) fn as_read(record: Record) -> Self {
         let before = Chain::Default.of(record.stage);

@@ -167,7 +167,7 @@ const USUAL_COUNT: usize = 30;
 
 /// Selects the largest set of records, up to the default size, for which the selection succeeds.
 ///
-/// If the selection fails for every size, the error is that of the first attempt.
+/// If the selection fails for every size, returns the error of the first attempt.
 fn as_many_as_there_are(
     target: &SelectionTarget,
     candidates: &[Candidate],

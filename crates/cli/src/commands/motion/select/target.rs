@@ -19,7 +19,7 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
     if is_code {
         if args.at.is_some() {
             bail!(
-                "--at: a code spectrum has no spread, so it cannot be made conditional: leave --at out"
+                "--at: a code spectrum states no standard deviation, so it cannot be made conditional: leave --at out"
             );
         }
         let spectrum = code::target(&args.target)?;
