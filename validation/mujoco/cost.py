@@ -67,7 +67,10 @@ def main():
         "barrelstack, in space": lambda each: of_ours("spatial", end, each),
         "barrelstack, in a plane": lambda each: of_ours("both", end, each),
     }
-    print("| engine | step (ms) | a step (µs) | a step, state read after each (µs) | a second of motion (ms) |")
+    print(
+        "| engine | step (ms) | time per step (µs) | time per step, state read after each step (µs) "
+        "| time per second of motion (ms) |"
+    )
     print("| :--- | ---: | ---: | ---: | ---: |")
     for name, engine in engines.items():
         cells = []
