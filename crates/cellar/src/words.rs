@@ -118,7 +118,7 @@ pub fn headline(summary: &CellarSummary) -> String {
         };
         let until = missing(summary).filter(|_| all > 0).map_or(String::new(), |missing| {
             format!(
-                " until {:.1} s, where the run ends, {missing:.1} s before the motion does",
+                " until the run ends at {:.1} s, {missing:.1} s before the end of the motion",
                 shown.end_time
             )
         });

@@ -462,7 +462,7 @@ fn document() -> Document {
             headline: "One barrel of eight falls from the top level.".into(),
             sentences: vec![
                 "Barrel B8 leaves its cradle 14.0 s into the shaking and hits the floor 0.8 s later.".into(),
-                "The other seven stay on their racks; the bottom rack ends 2 cm from where it stood.".into(),
+                "The other seven stay on their racks; the bottom rack has moved by 2 cm at the end.".into(),
             ],
             dots: vec![Dots {
                 direction: "along the barrels".into(),

@@ -398,7 +398,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
             }
         }
     } else {
-        "Each result is that of one run: small changes of friction or gaps can change what falls and when, so judge a difference by many runs."
+        "Each result is that of one run: small changes in friction or in gaps can change which bodies fall and when, so judge a difference by many runs."
             .into()
     });
     Verdict { headline: headline(sides) + &cut_short(sides), sentences, fine, ..Verdict::default() }

@@ -910,7 +910,7 @@ class ScaleFields(TypedDict, total=False):
     factor: Union[float, Quantity]
     """Factor; a negative factor reverses the motion. Default: 1 unless another field scales the motion."""
     measure: str
-    """Name of any other intensity measure that grows with the motion. The motion is scaled so that this measure
+    """Name of any other intensity measure that increases with the amplitude of the motion. The motion is scaled so that this measure
     reaches `value`. Examples: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`,
     `sa(1.0)` (period in seconds, damping 5 %) and `sa(1.0,0.02)`.
     """

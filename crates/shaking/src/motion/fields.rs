@@ -132,9 +132,9 @@ table! {
     pga = Kind::Quantity(&[Dimension::ACCELERATION], Range::up_to(1e4)), Default::Nothing;
     /// Peak horizontal velocity to which the motion is scaled.
     pgv = Kind::Quantity(&[Dimension::VELOCITY], Range::up_to(1e3)), Default::Nothing;
-    /// Name of any other intensity measure that grows with the motion. The motion is scaled so that this measure
-    /// reaches `value`. Examples: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`,
-    /// `sa(1.0)` (period in seconds, damping 5 %) and `sa(1.0,0.02)`.
+    /// Name of any other intensity measure that increases with the amplitude of the motion. The motion is scaled so
+    /// that this measure reaches `value`. Examples: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`,
+    /// `fiv3(1.0)`, `sa(1.0)` (period in seconds, damping 5 %) and `sa(1.0,0.02)`.
     measure = Kind::Text, Default::Nothing;
     /// Value of `measure` to which the motion is scaled.
     value = Kind::Quantity(&[Dimension::ACCELERATION, Dimension::VELOCITY, Dimension::LENGTH], Range::up_to(1e4)),

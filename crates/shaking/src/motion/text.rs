@@ -129,8 +129,8 @@ fn read_measured(reader: &Reader<'_>) -> Result<Option<Scale>, InputError> {
         .map_err(|error: MotionError| reader.inconsistent("measure", error.to_string()))?;
     let Some(dimension) = dimension_of(measure) else {
         let message = format!(
-            "`{}`: a motion cannot be scaled to {measure}; choose a measure that grows with the motion \
-             and has a unit of acceleration, velocity or length",
+            "`{}`: a motion cannot be scaled to {measure}; choose a measure that increases with the amplitude \
+             of the motion and has a unit of acceleration, velocity or length",
             reader.path_of("measure")
         );
         return Err(reader.inconsistent("measure", message));

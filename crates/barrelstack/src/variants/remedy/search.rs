@@ -3,12 +3,13 @@
 //! The search does not depend on how variants are run, so whole searches can be simulated in tests.
 //!
 //! Variants are run in blocks, the variants that are most likely to fall first: variants that fell with most of the
-//! changes tried before, then variants that fell earliest without a change. A change is rejected after the first block
-//! with which its failures exceed the number that is admissible among all variants. The order therefore does not
-//! affect which changes suffice, but only the number of runs until a change is rejected. The failure share of a
-//! rejected change is unknown, since the counted variants are a biased sample. If looser straps suffice, a pretension
-//! that was not rejected after its first block is not run further; it is then unknown whether this pretension
-//! suffices. If all variants of a change were counted, its failure share has a confidence interval. These intervals
+//! changes of the same kind tried before, then variants that fell earliest without a change.
+//! A change is rejected after the first block with which its failures exceed the number that is admissible among all
+//! variants. The order therefore does not affect which changes suffice, but only the number of runs until a change is
+//! rejected. The failure share of a rejected change is unknown, since the counted variants are a biased sample.
+//!
+//! If looser straps suffice, a pretension that was not rejected after its first block is not run further; it is then
+//! unknown whether this pretension suffices. If all variants of a change were counted, its failure share has a confidence interval. These intervals
 //! hold simultaneously for all changes and planes of the search (Bonferroni), so choosing among the changes does not
 //! invalidate them.
 
