@@ -86,7 +86,7 @@ impl StartSpec {
         let shifts = reader.sections("shift")?;
         if shifts.len() > MOST_SHIFTS {
             let message = format!(
-                "there are {} tables of shifts, but a scenario may have at most {MOST_SHIFTS}: write more shifts to a \
+                "there are {} tables of shifts, but a scenario may have at most {MOST_SHIFTS}: write the shifts to a \
                  file",
                 shifts.len()
             );
