@@ -543,7 +543,10 @@ fn observations_are_refused_at_their_place() {
         ("mode,B4.1 fell (s)\nejection,soon\n", "line 2, column \"B4.1 fell\": expected a number"),
         ("mode,B4.1 fell\nejection,1.5\n", "line 1, column \"B4.1 fell\": expected a unit"),
         ("mode,B4.1 fell (s)\nejection,-1\n", "column \"B4.1 fell\": expected a time above zero"),
-        ("mode,B4.1 fell (s)\nejection,stands\n", "column \"until\": expected the time until which the test"),
+        (
+            "mode,B4.1 fell (s)\nejection,stands\n",
+            "column \"until\": expected the time until which the test",
+        ),
         (
             "mode,B4.1 fell (s),until (s)\n,3,2\n",
             "expected a time up to the end of the observation at 2 s",

@@ -200,7 +200,10 @@ fn a_surveyed_room_starts_from_its_displacements() {
         let said = places(text);
         assert!(said.contains(place) && said.contains(words), "{said}");
     }
-    refused(&"[[start.shift]]\nstack = \"1-1\"\n".repeat(1001), &["1001 tables of shifts", "to a file"]);
+    refused(
+        &"[[start.shift]]\nstack = \"1-1\"\n".repeat(1001),
+        &["1001 tables of shifts", "to a file"],
+    );
 }
 
 #[test]

@@ -254,7 +254,7 @@ mod tests {
             (
                 [48, 52],
                 format!(
-                    "Of the {barrels}, about as many {end} across the barrels as mainly along them."
+                    "Of the {barrels}, about equal numbers {end} across and mainly along the barrels."
                 ),
             ),
         ] {
