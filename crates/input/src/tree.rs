@@ -196,9 +196,18 @@ impl Sources {
         let origin = |span: Range<usize>| Origin::File { file, start: span.start, end: span.end };
         let document = DeTable::parse(text).map_err(|error| {
             let origin = error.span().map_or(Origin::Whole(file), origin);
-            self.error(origin, Problem::Syntax { message: error.message().replace('\n', ", ") })
+            self.error(origin, Problem::Syntax { message: described(error.message()) })
         })?;
         Ok(convert_table(document.get_ref(), &origin))
+    }
+}
+
+/// Returns the message of the parser with what to do next.
+fn described(message: &str) -> String {
+    if message.contains("recurs") {
+        "tables or arrays are nested too deeply; use fewer levels".to_owned()
+    } else {
+        message.replace('\n', ", ") + "; correct the text at this position"
     }
 }
 
