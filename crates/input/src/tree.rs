@@ -202,7 +202,7 @@ impl Sources {
     }
 }
 
-/// Returns the message of the parser with what to do next.
+/// Returns the message of the parser, followed by advice.
 fn described(message: &str) -> String {
     if message.contains("recurs") {
         "tables or arrays are nested too deeply; use fewer levels".to_owned()

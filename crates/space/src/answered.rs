@@ -86,7 +86,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Repeats the run that is shown in detail, with small changes, and stores the comparison in the summary.
+    /// Runs the shown case again with small changes of step and position, and stores the comparison in the summary.
     ///
     /// # Errors
     /// When a repeat cannot be built or does not stand.

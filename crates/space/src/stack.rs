@@ -23,7 +23,7 @@ pub struct Stack {
     pub model: Model<Spatial>,
     /// Descriptions of all bodies, in the order of the body IDs; the ground comes first.
     pub parts: Vec<Part>,
-    /// Time step (s), divided during impacts; for a stack, the smallest of the steps of its plane models across and
+    /// Time step (s), which is subdivided during impacts; for a stack, the smaller step of its plane models across and
     /// along the barrels.
     pub step: f64,
     /// Height (m) from the ground to the top of the highest barrel; zero for a free scene.

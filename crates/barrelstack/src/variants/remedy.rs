@@ -45,9 +45,9 @@ described! {
         pub height: Option<Tried>,
         /// The loosest straps that suffice; null if no tried straps do.
         pub straps: Option<Tried>,
-        /// Share of the draws of the uncertain constants in which fewer stacks fail with the number of levels in
-        /// `height` than with the straps in `straps`; a draw with equal shares counts as one half. Null if `height` or
-        /// `straps` is null, or if the `range` of either is null.
+        /// Share of the random draws of the uncertain constants for which the change in `height` leaves fewer stacks that
+        /// fail than the change in `straps`; a draw for which both leave the same share counts as one half. Null if
+        /// `height` or `straps` is null, or if the `range` of either is null.
         pub height_before_straps: Option<f64> as "1",
         /// Number of changes that may be tried, each in every plane; the intervals hold
         /// simultaneously for all these changes.

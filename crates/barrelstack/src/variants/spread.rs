@@ -21,7 +21,7 @@ described! {
         /// Quantities that differ between the variants: positions and masses ("imperfections"), uncertain constants
         /// ("unknowns"), both, or neither.
         pub kind: &'static str ["imperfections", "unknowns", "both", "neither"],
-        /// Seed of the sequence that draws the variants.
+        /// Seed of the random sequence from which the variants are drawn.
         pub seed: u32,
         /// Number of variants with a verdict.
         pub variants: u32,

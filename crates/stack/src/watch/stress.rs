@@ -79,7 +79,8 @@ enum Cells {
     /// Cells of equal length in `x` along a profile with this half length (m): the cells of the upper half, followed by
     /// the cells of the lower half.
     Along(f64),
-    /// One point for every fixed node of the body, and one for every other contact element at its first contact.
+    /// One point for every fixed node of the body, and one for each of the other contact elements, at the place of its
+    /// first contact.
     Nodes,
 }
 

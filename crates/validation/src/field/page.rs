@@ -443,9 +443,9 @@ the constants, because the friction decides whether such stacks fall. Nobody has
 - **Why half fell and half did not.** In the model this depends on the motion in the cellar and on the direction of \
 the rows, neither of which is known. The heights of the stacks in each room, the direction of the rows and a record \
 inside the building would explain more than any test of friction.
-- **The smaller room and the rest of the cellar.** One set of constants explains both only if the height or the \
-direction of the stacks in the smaller room was different. Stacks that knock other stacks over would also explain \
-both, but such impacts are not simulated: each stack stands alone on an open floor, without neighbors, walls or \
+- **The smaller room and the rest of the cellar.** One set of constants explains both only if the stacks \
+in the smaller room had another height or another orientation than the other stacks. Stacks that knock other stacks \
+over would also explain both, but such impacts are not simulated: each stack stands alone on an open floor, without neighbors, walls or \
 aisles. The model error of 0.10, which is meant to allow for this, is a guess.
 - **Empty barrels.** Many barrels were empty in August 2014 (Press Democrat 2014, above). In the model all are full.
 - **Long motions.** Under both records of Maule, racks walk until they fall off, and the first loss of a seat occurs \

@@ -90,8 +90,8 @@ fn is_comment(source: &Source<'_>, line: usize) -> bool {
     text.is_empty() || text.starts_with(['#', '%', '!', '/'])
 }
 
-/// Parses a first line such as `11800 0.005` or `0.005 11800` above rows with a different number of
-/// values. Returns the line, the number of values and the time step (s).
+/// Parses a first line that states the number of samples and the time step (s), such as `11800 0.005` or `0.005 11800`.
+/// Returns the line and both values; `None` if the line may be a row of numbers like the rows below it.
 pub(super) fn count_and_step(source: &Source<'_>, first: usize) -> Option<(usize, usize, f64)> {
     let (mut row, mut next) = (Vec::new(), Vec::new());
     source.tokens(first, f64::INFINITY, &mut row).ok()?;
