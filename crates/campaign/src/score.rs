@@ -229,7 +229,7 @@ pub enum ScoreError {
     /// The scenario is a free scene, which has no racks.
     #[error(
         "\"{0}\" is a free scene, but a RockScore is computed for a stack of barrels on racks: use the scenario of a \
-         stack"
+         stack, such as demo-napa"
     )]
     NoStack(String),
     /// A state cannot be applied to the stack.

@@ -226,7 +226,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
         &["`design.half_width` must be between"],
     ),
     (4, "[design]\nkind = \"full-factorial\"\nchunk = 0 # HERE\n", &["`design.chunk` must be"]),
-    (4, "[design\nkind = 1\n", &["this is not TOML"]),
+    (4, "[design\nkind = 1\n", &["this is not valid TOML"]),
 ];
 
 #[test]

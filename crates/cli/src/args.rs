@@ -55,11 +55,11 @@ pub(crate) enum Command {
     Score(crate::commands::score::ScoreArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
-    /// Shake a cellar with its motion and then an aftershock: do the stacks that still stand survive?
+    /// Shake a cellar with its motion and then with an aftershock: do the stacks that still stand survive?
     Aftershock(crate::commands::aftershock::AftershockArgs),
     /// Run two or more scenarios and compare them on one page.
     Compare(crate::commands::compare::CompareArgs),
-    /// Run every case of the paper, and compare the numbers of the paper with those of the program.
+    /// Run every case of Candia, de la Llera and Almazán (2008), and compare their numbers with those of the program.
     Reproduce(ReproduceArgs),
     /// Read, inspect, change and make ground motions.
     Motion(Box<crate::commands::motion::MotionArgs>),
@@ -96,11 +96,10 @@ pub(crate) struct ScenarioArgs {
 /// Number of variants to run in addition to the stack as stated, and the run to show.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub(crate) struct VariantArgs {
-    /// Number of variants of the stack to run, in place of imperfections.variants; 0 runs only the
-    /// stack as stated.
+    /// Number of variants to run, in place of imperfections.variants; 0 runs only the stack, or the cellar, as stated.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
     pub(crate) variants: Option<u32>,
-    /// Number of the variant to show, in place of the most typical one; 0 shows the stack as stated.
+    /// Number of the variant to show, in place of the most typical one; 0 shows the stack, or the cellar, as stated.
     #[arg(long, value_name = "NUMBER")]
     pub(crate) variant: Option<u32>,
 }
@@ -121,8 +120,8 @@ pub(crate) struct RunArgs {
     pub(crate) overwrite: bool,
     #[command(flatten)]
     pub(crate) tables: crate::tables::TableArgs,
-    /// Repeat the run with half the time step, with finer contact nodes and with disturbances of a nanometer, and
-    /// report how long the run is predictable and whether its outcome is robust.
+    /// Repeat the run with half the time step, with more closely spaced contact nodes, and with disturbances of a
+    /// nanometer; report until when the repeats agree with the run, and whether its outcome is robust.
     #[arg(long)]
     pub(crate) verify: bool,
     /// Do not search for changes that would have kept a fallen stack up; the search may take as

@@ -7,7 +7,7 @@ use crate::typed::typed;
 /// Formats of figures besides SVG.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct FigureArgs {
-    /// Format of figures in addition to SVG; may be repeated. The default is PNG and PDF.
+    /// Format of figures, which are always written as SVG too; may be repeated. The default is PNG and PDF.
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Vec<FormatName>,
     /// Resolution (dots per inch) of figures in PNG.

@@ -80,7 +80,7 @@ impl fmt::Display for Place {
 #[non_exhaustive]
 pub enum Problem {
     /// The text is not TOML.
-    #[error("this is not TOML: {message}")]
+    #[error("this is not valid TOML: {message}")]
     Syntax {
         /// Error message from the parser.
         message: String,
@@ -137,7 +137,7 @@ pub enum Problem {
         valid: Vec<String>,
     },
     /// A required field is missing.
-    #[error("`{field}` is missing from {section}; add {example}")]
+    #[error("`{field}` is missing from {section}; {}", addition(example))]
     Missing {
         /// Key of the field.
         field: String,
@@ -167,7 +167,7 @@ pub enum Problem {
         example: String,
     },
     /// A string that is not a quantity of the required dimension.
-    #[error("`{field}`: {reason}; write for example {example}")]
+    #[error("`{field}`: {reason}{}", correction(reason, example))]
     Quantity {
         /// Dotted path of the field, such as `run.step`.
         field: String,
@@ -222,6 +222,23 @@ pub enum Problem {
         /// Description of the inconsistency.
         message: String,
     },
+}
+
+/// Returns the advice to add a field, of which `example` is an example.
+fn addition(example: &str) -> String {
+    if example.starts_with('`') {
+        format!("add it, for example {example}")
+    } else {
+        format!("add {example}")
+    }
+}
+
+/// Returns the advice on a quantity; empty if the reason contains advice.
+fn correction(reason: &QuantityError, example: &str) -> String {
+    match reason {
+        QuantityError::Malformed { reason, .. } if reason.contains("write") => String::new(),
+        _ => format!("; write for example {example}"),
+    }
 }
 
 fn suggestion(nearest: Option<&str>) -> String {

@@ -70,8 +70,8 @@ pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
     let cellar = match super::load_any(&scenario)? {
         Loaded::Cellar(cellar) => *cellar,
         Loaded::Scenario(_) => bail!(
-            "{}: this is the scenario of one stack; write a cellar file that extends it, with kind = \"cellar\", \
-             [room] and one [[block]], and give that file",
+            "{}: this is the scenario of one stack, but an aftershock shakes a cellar; give a cellar such as demo-cellar, \
+             or write a cellar file that extends this scenario, with kind = \"cellar\", [room] and at least one [[block]]",
             args.scenario
         ),
     };

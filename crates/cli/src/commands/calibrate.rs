@@ -70,8 +70,9 @@ enum Test {
     /// Each row of the file is a test: `mode` (ejection, rocking, rack-sliding, overturning or
     /// stands), the times of falls (`B4.1 fell (s)` and so on, or `first fall (s)` and `first
     /// barrel`), `loss of seat (s)`, the end of the observation (`until (s)`), and `scenario` if
-    /// the tests have different scenarios. Times are counted from the start of the motion. `stands`
-    /// marks a body that did not fall; an empty cell marks what was not observed.
+    /// the tests have different scenarios. Times are counted from the start of the motion. In a
+    /// column of times, `stands` marks a body that did not fall; an empty cell marks what was not observed. `B4.1` is
+    /// the first barrel of level 4.
     ///
     /// Many stacks are simulated, each with slightly different geometry, and with parameters drawn
     /// around those of the scenario. Each simulation is weighted by its agreement with the

@@ -421,6 +421,9 @@ impl Reader<'_> {
         } else {
             format!("`{name} = \"{number} {unit}\"`")
         };
+        // Accelerations are often stated in g, so both units are offered.
+        let example =
+            if unit == "m/s^2" { example.replace(unit, "g") + " or " + &example } else { example };
         let found = node.value.describe();
         let problem = Problem::BareNumber { field: self.path_of(name), found, example };
         self.sources.error(node.origin, problem)

@@ -322,7 +322,8 @@ fn check(reader: &Reader<'_>, barrel: &Barrel) -> Result<(), ScenarioError> {
     let path = |name| reader.path_of(name);
     if barrel.head_diameter > barrel.bilge_diameter {
         let message = format!(
-            "`{}` is {} m, more than the bilge of {} m; a barrel is widest at the bilge",
+            "`{}` is {} m, more than the bilge diameter of {} m; a barrel is widest at the bilge: lower the one or \
+             raise the other",
             path("head_diameter"),
             barrel.head_diameter,
             barrel.bilge_diameter
@@ -351,7 +352,8 @@ fn check(reader: &Reader<'_>, barrel: &Barrel) -> Result<(), ScenarioError> {
     }
     if barrel.mass < barrel.empty_mass {
         let message = format!(
-            "`{}` is {} kg, less than the {} kg of the wood; lower `{}` too",
+            "`{}` is {} kg, less than the {} kg of the empty barrel; raise it, since it includes the wine, or lower \
+             `{}` too",
             path("mass"),
             barrel.mass,
             barrel.empty_mass,

@@ -102,7 +102,7 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
         && mass < stack.barrel.empty_mass
     {
         let message = format!(
-            "`{}` is {mass} kg, less than the {} kg of the wood; give the mass of wood and wine together",
+            "`{}` is {mass} kg, less than the {} kg of the empty barrel; give the mass of wood and wine together",
             reader.path_of("mass"),
             stack.barrel.empty_mass
         );

@@ -317,7 +317,7 @@ fn read_interfaces(
         }
         if between[0] == ground.kind {
             let message = format!(
-                "the ground carries no contact nodes; write `between = [\"{}\", \"{}\"]`",
+                "the first kind carries the contact nodes, and the ground carries none; write `between = [\"{}\", \"{}\"]`",
                 between[1], between[0]
             );
             return Err(reader.inconsistent("between", message));

@@ -123,8 +123,8 @@ fn read_interfaces(
             return Err(reader.inconsistent("between", message));
         }
         if reader.choice::<Basis>("basis")? == Basis::Length {
-            let message = "in three dimensions, a contact is a point, a line or a face, and has no length of boundary; \
-                           state stiffness and damping per contact, with basis = \"node\""
+            let message = "constants per length of boundary are valid only in a plane; in three dimensions, state \
+                           stiffness and damping per contact, with basis = \"node\""
                 .to_owned();
             return Err(reader.inconsistent("basis", message));
         }

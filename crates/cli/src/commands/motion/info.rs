@@ -24,7 +24,7 @@ pub(super) struct InfoArgs {
     input: Input,
     #[arg(
         long,
-        help = "Also print CAV standardized, RMS, Housner, ASI, VSI, Fajfar, Sa, RotD50 and RotD100, \
+        help = "Also print standardized CAV, RMS, Housner, ASI, VSI, Fajfar, Sa, RotD50 and RotD100, \
                 and the dominant velocity pulse"
     )]
     all_measures: bool,

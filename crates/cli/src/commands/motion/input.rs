@@ -25,8 +25,8 @@ const LIMIT: u64 = 256 << 20;
 pub(super) struct Input {
     /// Motion files of any known format, or napa-college-2014, which is bundled. Several files are
     /// read as components of one record; for files that do not belong together, `info` lists each
-    /// file separately. `info`, `plot`, `process` and `convert` also accept folders, and use all
-    /// records in them.
+    /// file separately. `info`, `plot`, `process`, `convert` and `select` also accept folders, and use
+    /// all records in them.
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
     /// Join several files into one long record; each file must overlap the next.
@@ -51,8 +51,8 @@ pub(super) struct Input {
     /// files; by default, the .xml files in the folder of a file in counts are used.
     #[arg(long, value_name = "PATH")]
     station_xml: Option<PathBuf>,
-    /// Quantity recorded in SEED and SAC files of instruments other than accelerometers; this
-    /// quantity is differentiated to acceleration.
+    /// Quantity recorded in SEED and SAC files of instruments other than accelerometers; velocities
+    /// and displacements are differentiated to accelerations.
     #[arg(long = "as", value_enum, value_name = "QUANTITY")]
     recorded: Option<Recorded>,
 }

@@ -14,8 +14,8 @@ use crate::typed::word;
 #[derive(Debug, clap::Args)]
 pub(super) struct Output {
     /// File to write; the extension selects the format: .at2 (PEER, g, one component), .csv, .npz
-    /// (NumPy) or .txt (the program's own format, exact). If the input is a folder, the output
-    /// folder.
+    /// (NumPy) or .txt (the program's own format, exact). Where the input is a folder, this is
+    /// the folder to write.
     #[arg(long, short, value_name = "FILE", visible_alias = "out")]
     pub(super) output: PathBuf,
     /// Replace the file if it exists.

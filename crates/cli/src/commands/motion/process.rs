@@ -80,7 +80,7 @@ pub(super) struct ProcessArgs {
 /// Source of the corner frequencies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum CornersFrom {
-    /// The noise before the first arrival.
+    /// The corners between which the signal is at least three times the noise before the first arrival.
     Auto,
 }
 

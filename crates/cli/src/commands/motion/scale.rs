@@ -29,9 +29,9 @@ pub(super) struct ScaleArgs {
     /// Multiply the accelerations by this factor.
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     factor: Option<f64>,
-    /// Scale the motion for a model of this length ratio: time is multiplied by the square root of
-    /// the ratio, and accelerations remain unchanged. Applied after --to or --factor.
-    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    /// Length of a model divided by that of its prototype, such as 0.25: time is multiplied by the square root of this
+    /// ratio, and accelerations remain unchanged. Applied after --to or --factor, if one of them is also given.
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
     froude: Option<f64>,
     #[command(flatten)]
     output: Output,

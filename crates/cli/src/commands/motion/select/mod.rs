@@ -88,9 +88,9 @@ pub(super) struct SelectArgs {
 /// Spectrum of a record that is compared with the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Spectrum {
-    /// Median over all directions of the two horizontals.
+    /// Median over all directions of the two horizontal components.
     Rotd50,
-    /// Largest value over all directions of the two horizontals.
+    /// Largest value over all directions of the two horizontal components.
     Rotd100,
     /// The first horizontal component.
     H1,
