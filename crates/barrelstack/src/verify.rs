@@ -241,7 +241,9 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
             let per_seat = seats.iter().all(|interface| interface.basis == Basis::Seat);
             if stack.view == View::Transverse && !per_seat {
                 return Err(
-                    "across the barrels, each single node (cradle supports, corners of beams, rolling barrels) represents one node spacing of the boundary, so halving the spacing would make these contacts softer"
+                    "in transverse section, each isolated node (of cradle supports, beam corners and rolling barrels) \
+                     represents a boundary length of one node spacing, so half the spacing would make these contacts \
+                     softer"
                         .into(),
                 );
             }

@@ -91,7 +91,7 @@ fn posts_meet_no_barrel_along_them_and_every_rack_below() {
 fn a_rail_that_would_carry_a_barrel_on_its_outer_corner_is_refused_with_the_most_that_goes() {
     let refused = assemble(&demo(&["stack.rack.incline=\"11.4 deg\""])).unwrap_err().to_string();
     println!("{refused}");
-    assert!(refused.contains("make stack.rack.incline smaller, at most 11.0"), "{refused}");
+    assert!(refused.contains("reduce stack.rack.incline to at most 11.0"), "{refused}");
 }
 
 #[test]

@@ -165,9 +165,9 @@ fn sentences_say_what_suffices_and_what_does_not() {
             Some(height(1)),
             Some(straps(1)),
             &both[..],
-            "A stack of three levels, or of five levels held together by straps tightened to 4 kN, would have stood \
-             in 63 of 64 variants. At most 12 % of stacks with either change would fall (95 % confidence, corrected \
-             for trying up to 9 changes).",
+            "A stack of three levels, or of five levels held together by straps tightened to 4 kN, would have stood in \
+             63 of 64 variants. At most 12 % of stacks with either change would fall (95 % confidence, corrected for \
+             testing up to 9 changes).",
         ),
         (
             Some(height(1)),
@@ -175,15 +175,15 @@ fn sentences_say_what_suffices_and_what_does_not() {
             &both,
             "A stack of three levels would have stood in 63 of 64 variants, and a stack of five levels held together \
              by straps tightened to 4 kN in all 64 variants. At most 12 % of stacks with the first change and 9 % of \
-             stacks with the second would fall (95 % confidence, corrected for trying up to 9 changes).",
+             stacks with the second would fall (95 % confidence, corrected for testing up to 9 changes).",
         ),
         (
             Some(height(0)),
             None,
             &both,
-            "A stack of three levels would have stood in all 64 variants. Straps tightened to 4 kN would not have \
-             been enough. At most 9 % of stacks with three levels would fall (95 % confidence, corrected for trying \
-             up to 9 changes).",
+            "A stack of three levels would have stood in all 64 variants. Straps tightened to 4 kN would not have been \
+             enough. At most 9 % of stacks with three levels would fall (95 % confidence, corrected for testing up to \
+             9 changes).",
         ),
         (
             None,
@@ -191,7 +191,7 @@ fn sentences_say_what_suffices_and_what_does_not() {
             &both,
             "A stack of five levels held together by straps tightened to 4 kN would have stood in all 64 variants; \
              fewer levels without straps would not have been enough. At most 9 % of stacks with five levels held \
-             together by straps tightened to 4 kN would fall (95 % confidence, corrected for trying up to 9 changes).",
+             together by straps tightened to 4 kN would fall (95 % confidence, corrected for testing up to 9 changes).",
         ),
         (
             None,

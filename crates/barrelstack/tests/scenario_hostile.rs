@@ -149,7 +149,7 @@ fn files_that_extend_each_other_are_refused() {
     let path = folder.path().join("snake.toml");
     fs::write(&path, "schema = 1\nextends = \"snake.toml\"\n").unwrap();
     let error = Scenario::load(&path, &[]).unwrap_err();
-    assert!(error.sentence().contains("does one extend itself"), "{error}");
+    assert!(error.sentence().contains("whether one of them extends itself"), "{error}");
 }
 
 #[test]

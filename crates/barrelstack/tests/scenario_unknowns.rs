@@ -80,7 +80,7 @@ fn of_former_and_present_keys_the_upper_layer_holds() {
     let error = Scenario::parse("mine.toml", &both, &[]).unwrap_err();
     assert_eq!(
         error.sentence(),
-        "mine.toml:4:1: `unknowns.damping` is stated, too, and replaces this key; leave one of them out"
+        "mine.toml:4:1: `unknowns.damping`, which replaces this key, is stated too; leave one of the two out"
     );
     let error = Scenario::builtin("demo-napa", &["imperfections.kind=some".to_owned()]);
     let sentence = error.unwrap_err().sentence();

@@ -163,7 +163,7 @@ fn impossible_straps_are_refused_with_what_to_do() {
     let wrong: [(&[&str], &str); 5] = [
         (&["stack.strap.levels=9"], "the stack has only 4"),
         (&["stack.strap.levels=1", TOGETHER], "ties at least 2"),
-        (&["stack.strap.slack=\"1 cm\"", PRETENSION], "leave one of the two out"),
+        (&["stack.strap.slack=\"1 cm\"", PRETENSION], "leave `pretension` or `slack` out"),
         (&["stack.strap.strength=\"2 kN\"", PRETENSION], "not below the strength"),
         (&["stack.strap.stiffness=\"3 kN\""], "stiffness"),
     ];

@@ -118,7 +118,7 @@ fn read(reader: Reader<'_>) -> Result<Solid, InputError> {
         Solid::Capsule { length, radius } if *length < 2.0 * radius => {
             let message = format!(
                 "`{}` of {length} m is too short for two round ends with a radius of {radius} m; it must be at least \
-                 {} m, the length of a ball",
+                 {} m, twice the radius",
                 reader.path_of("length"),
                 2.0 * radius
             );
@@ -134,8 +134,7 @@ fn read(reader: Reader<'_>) -> Result<Solid, InputError> {
         Solid::Block { sides, rounding } if sides.iter().any(|side| 2.0 * rounding >= *side) => {
             let least = sides.iter().copied().fold(f64::INFINITY, f64::min);
             let message = format!(
-                "`{}` of {rounding} m must be less than half of the shortest side, which is {least} m; state a smaller \
-                 radius",
+                "`{}` of {rounding} m must be less than half of the shortest side ({least} m); state a smaller radius",
                 reader.path_of("rounding")
             );
             return Err(reader.inconsistent("rounding", message));

@@ -221,8 +221,8 @@ pub fn collapse(
             ));
             if share < UNSEEN {
                 warnings.push(format!(
-                    "test {}: the model hardly reproduces the observed mode ({name}, with {:.0} % of the weight): \
-                     check that motion, geometry and the definition of the mode match the test",
+                    "test {}: the model hardly reproduces the observed mode ({name}: these simulations have {:.0} % of \
+                     the weight): check that motion, geometry and the definition of the mode match the test",
                     at + 1,
                     100.0 * share
                 ));
@@ -271,8 +271,8 @@ fn prepared<'a>(
             let differs = |p: &&Parameter| lead.tunable.start(**p) != tunable.start(**p);
             if let Some(parameter) = parameters.iter().find(differs) {
                 return Err(CalibrateError::Scenario(format!(
-                    "the scenarios of tests 1 and {} differ in {}, and a fit gives one value for all tests: \
-                     state the same value in both, or do not fit it",
+                    "the scenarios of tests 1 and {} differ in {}, but a fit gives one value for all tests: state the \
+                     same value in both scenarios, or do not fit this parameter",
                     at + 1,
                     parameter.name()
                 )));

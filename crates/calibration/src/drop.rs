@@ -223,8 +223,8 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<DropResult, Cal
     }
     if times.len() < 4 {
         return Err(table.unsuited(format!(
-            "{} impacts do not determine the restitution and its scatter: at least four of one bounce \
-             sequence are needed",
+            "{} impacts do not determine the restitution and its scatter: at least four impacts of one bounce sequence \
+             are needed",
             times.len()
         )).into());
     }
@@ -232,7 +232,8 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<DropResult, Cal
     let e = math::pow(flights[flights.len() - 1] / flights[0], 1.0 / (count - 1.0));
     if e >= 1.0 {
         return Err(table.unsuited(
-            "the flights between impacts do not grow shorter: are these the impacts of one bounce?",
+            "the last flight between two impacts is not shorter than the first: check that all impacts belong to one \
+             bounce sequence",
         ).into());
     }
     // Times are in units of the first flight and speeds in units of the first speed, so that all are about 1.

@@ -5,8 +5,8 @@ use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, signifi
 use super::{Calibration, Estimate};
 
 /// Statement of what the intervals cover, used if [`Calibration::covers`] is `None`.
-const COVERS: &str = "The 95 % intervals account only for the scatter of the test. They do not cover errors of the model, \
-                      or of values that were given as exact.";
+const COVERS: &str = "The 95 % intervals account only for the scatter of the test. They do not cover errors of the \
+    model or of values that are assumed to be exact.";
 
 impl Calibration {
     /// Builds the report page of a calibration.

@@ -79,7 +79,7 @@ impl Tunable {
         let refuse = |reason: &str| CalibrateError::Scenario(reason.to_owned());
         let Scene::Stack { stack, .. } = &scenario.scene else {
             return Err(refuse(
-                "k, c and μ can be fitted to a stack only, and this is a free scene: use the scenario of a stack",
+                "k, c and μ can be fitted only to a stack, but this is a free scene: use the scenario of a stack",
             ));
         };
         let interfaces = &stack.interfaces;

@@ -124,7 +124,8 @@ pub fn response(
     );
     if !found.converged {
         warnings.push(
-            "the fit did not converge: start from closer values, shorten the window or fit fewer parameters"
+            "the fit did not converge: start from values closer to the expected ones, shorten the window or fit fewer \
+             parameters"
                 .to_owned(),
         );
     }
@@ -258,13 +259,12 @@ fn identifiability(
     for (estimate, matters) in estimates.iter().zip(matters) {
         if !matters {
             warnings.push(format!(
-                "the response in this test does not depend on {}, which keeps its value in the \
-                 scenario",
+                "the response in this test does not depend on {}, so its value in the scenario is kept",
                 estimate.name
             ));
         } else if estimate.high > 4.0 * estimate.low {
             warnings.push(format!(
-                "this test hardly determines {}: the ends of its interval differ by a factor of {}",
+                "this test hardly determines {}: the upper end of its interval is {} times the lower end",
                 estimate.name,
                 short(estimate.high / estimate.low)
             ));

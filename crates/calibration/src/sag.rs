@@ -50,7 +50,8 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
     let give = press.iter().zip(&sag).map(|(x, y)| x * y).sum::<f64>() / squares;
     if !(give > 0.0 && give.is_finite()) {
         return Err(table
-            .unsuited("the sag does not grow with the load: measure loads from the unloaded rack, and sag as positive downward")
+            .unsuited("the sag does not grow with the load: state load and sag relative to the unloaded rack, and sag \
+                 as positive downward")
             .into());
     }
     let freedom = load.len() - 1;
@@ -71,8 +72,8 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
         let variance = found.center_variance + found.center * found.center * found.slope_variance;
         if hollow.abs() > student_quantile(0.95, found.freedom) * variance.sqrt() {
             warnings.push(format!(
-                "the line through the readings has a sag of {} mm at zero load, as if the seats did not touch \
-                 at first: apply a light load first, and measure both load and sag from there",
+                "the line through the readings has a sag of {} mm at zero load, as if the seats were not in contact at \
+                 first: apply a light load first, and measure load and sag relative to that state",
                 short(1e3 * hollow)
             ));
         }

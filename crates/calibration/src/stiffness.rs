@@ -71,9 +71,9 @@ pub fn stiffness(
         && difference > CLEARLY
     {
         warnings.push(format!(
-            "the force is proportional to penetration to the power 1.5 rather than to penetration (the information \
-             criterion is lower by {difference:.0}): the straight line is valid between the measured loads only; \
-             law = \"hertz\" with stiffness = {} fits better",
+            "a force proportional to penetration to the power 1.5 fits the rows better than a straight line (its \
+             information criterion is lower by {difference:.0}): use the straight line only between the measured \
+             loads, or state law = \"hertz\" with stiffness = {}",
             quoted(hertz / f64::from(nodes), Dimension::HERTZ_STIFFNESS)
         ));
     }

@@ -39,8 +39,8 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     })?;
     if stack.across().is_some() {
         return Err(refuse(
-            "a tap test needs the one plane in which the stack swayed, but stack.view = \"both\" has two planes: set \
-             stack.view to \"transverse\" or \"longitudinal\"",
+            "a tap test measures the sway in one plane, but stack.view = \"both\" has two planes: set stack.view to \
+             \"transverse\" or \"longitudinal\"",
         ));
     }
     let seats = [

@@ -101,8 +101,8 @@ impl Decision {
 pub enum DecisionError {
     /// No case has a verdict.
     #[error(
-        "none of the {rows} cases of the study has a verdict, so it cannot be evaluated; see the column \
-         `error` of its table"
+        "none of the {rows} cases of the study has a verdict, so the study cannot be evaluated; see the column `error` \
+         of its table"
     )]
     NoCases {
         /// Number of rows of the table, each of which is a case.

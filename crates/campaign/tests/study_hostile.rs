@@ -143,7 +143,9 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     (
         2,
         "[[factor]]\nfield = \"motion.record\" # HERE\nvalues = [\"a.AT2\", \"b.AT2\"]\n",
-        &["`motion.record` names a file; list the `records` of [[motion]]"],
+        &[
+            "`motion.record` names a file, which a factor cannot vary; list the files as `records` of [[motion]]",
+        ],
     ),
     (
         2,

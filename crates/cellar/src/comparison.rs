@@ -113,7 +113,7 @@ described! {
         pub barrels_fallen: Estimate as "1",
         /// Number of barrels that fall, divided by the capacity.
         pub share_lost: Estimate as "1",
-        /// Expected loss of wine, under the central assumption on how many fallen barrels burst.
+        /// Expected loss of wine, under the central assumption about how many fallen barrels burst.
         pub wine_lost: f64 as "m3",
         /// Cost of the barrels that burst and of their wine, at the lower and at the upper estimate of the prices. The
         /// number of barrels that burst is that of the central assumption.
@@ -165,7 +165,7 @@ described! {
         pub barrels_fallen: Change as "1",
         /// Number of barrels that fall, divided by the capacity.
         pub share_lost: Change as "1",
-        /// Expected loss of wine, under the central assumption on how many fallen barrels burst. This assumption is
+        /// Expected loss of wine, under the central assumption about how many fallen barrels burst. This assumption is
         /// less certain than the number of barrels, so no interval is given.
         pub wine_lost: Change as "m3",
         /// Cost of the barrels that burst and of their wine, at the lower estimate of the prices. The number of barrels

@@ -86,8 +86,8 @@ impl Kept {
         }
         if file.cellar_hash != self.cellar_hash {
             let message = format!(
-                "it belongs to the cellar {}, but this cellar is {}: the scenario file, the changes of its values or \
-                 the number of variants differ",
+                "it belongs to a cellar with the hash {}, but this cellar has the hash {}: the scenario file, the \
+                 changes to its values, or the number of variants differs",
                 file.cellar_hash, self.cellar_hash
             );
             return Err(failure(&path, &message));

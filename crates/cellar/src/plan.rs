@@ -463,13 +463,14 @@ fn walls(
         all.dedup();
         let more = match all.len() - 1 {
             0 => String::new(),
-            1 => ", as does 1 more".to_owned(),
-            more => format!(", as do {more} more"),
+            1 => ", as does 1 more stack".to_owned(),
+            more => format!(", as do {more} more stacks"),
         };
         let border = if cellar.room.walls { "wall" } else { "edge of the room" };
         let block = stacks[at].block + 1;
         let message = format!(
-            "stack {} reaches {} into the {side} {border}{more}: move the block, take fewer stacks, or enlarge the room",
+            "stack {} extends {} beyond the {side} {border}{more}: move the block, take fewer stacks, or enlarge the \
+             room",
             stacks[at].name,
             meters(depth)
         );
@@ -488,7 +489,7 @@ fn columns(cellar: &Cellar, stacks: &[Standing], footprints: &[Convex], problems
             (0..stacks.len()).filter(|at| footprints[*at].apart(&shape) < -TOUCH).collect();
         if let Some(at) = hit.first() {
             let message = format!(
-                "the column \"{}\" stands in stack {}: move the column or the block",
+                "the column \"{}\" overlaps stack {}: move the column or the block",
                 column.name, stacks[*at].name
             );
             problems.push((cellar.host.error(&[&format!("column.{index}.at")], message), hit));
@@ -517,8 +518,8 @@ fn doors(cellar: &Cellar, stacks: &[Standing], footprints: &[Convex], problems: 
             (0..stacks.len()).filter(|at| footprints[*at].apart(&shape) < -TOUCH).collect();
         if let Some(at) = hit.first() {
             let message = format!(
-                "stack {} is too close to the door \"{}\": {ENTRY} m inside the room must be free; move the door or \
-                 the block",
+                "stack {} is too close to the door \"{}\": the room must be free up to {ENTRY} m from the door; move \
+                 the door or the block",
                 stacks[*at].name, door.name
             );
             problems.push((cellar.host.error(&[&format!("door.{index}.position")], message), hit));

@@ -230,9 +230,9 @@ fn aisles(summary: &CellarSummary) -> Table {
         format!(
             "Times are counted from the start of the shaking. Ranges span the 5th to the 95th percentile of the \
              variants in which the event happens, or all of these variants if there are fewer than {FEW}; shares of \
-             variants are given with their 95 % intervals. A barrel lies in the aisle if its center \
-             is above the floor of the aisle. Area counts as covered if any body is above it, at any height; an aisle is blocked if no path 0.6 m wide \
-             leads through it."
+             variants are given with their 95 % intervals. A barrel lies in the aisle if its center is above the floor \
+             of the aisle. The floor counts as covered where a body is above it, at any height; an aisle is blocked if \
+             no path 0.6 m wide leads through it."
         ),
         &summary.aisles,
         &[
@@ -284,7 +284,7 @@ fn contacts(touched: &[&ShownStack]) -> Table {
     };
     Table::of(
         "First contact of each stack with another stack in the run that is shown. A stack counts as knocked over if \
-         the contact comes before its first loss of a seat.",
+         this contact precedes its first loss of a seat.",
         touched,
         &[
             ("stack", "", &|one| Cell::text(&one.name)),
@@ -356,8 +356,8 @@ pub fn stacks(summary: &CellarSummary) -> Table {
 
 fn rows(summary: &CellarSummary) -> Table {
     Table::of(
-        "For each row: share of the variants in which the first stack to fall is in this row, and mean numbers of \
-         stacks of this row that fall by themselves and that are knocked over.",
+        "For each row: the share of the variants in which this row contains the first stack to fall, and the mean \
+         numbers of its stacks that fall by themselves and that are knocked over.",
         &summary.rows,
         &[
             ("row", "", &|row| Cell::text(row.row.to_string())),
@@ -377,8 +377,8 @@ fn obstacles(summary: &CellarSummary) -> Table {
     Table::of(
         "Forces on walls and columns, in the variants in which a body strikes them. Impact forces last a few \
          milliseconds and grow with the assumed stiffness of the contact. Impulses are summed over the whole run and \
-         include those of bodies that lean on the wall, so they grow with the length of the run. Neither the forces \
-         nor the impulses are design loads by themselves.",
+         include the impulses of bodies that lean on the wall, so they grow with the duration of the run. Neither the \
+         forces nor the impulses are design loads by themselves.",
         &summary.obstacles,
         &[
             ("wall or column", "", &|one| Cell::text(&one.name)),

@@ -115,7 +115,7 @@ pub enum RoomFailure {
     /// There are too many bodies.
     #[error(
         "the room has {bodies} barrels, racks and other bodies, but at most {MOST_BODIES} are allowed (a run of that \
-         size needs about 3 GB): divide it into rooms such that nothing can fall from one into another"
+         size needs about 3 GB): divide it into rooms between which nothing can fall"
     )]
     Large {
         /// Number of bodies.
@@ -171,7 +171,7 @@ pub enum RoomFailure {
     },
     /// A shift refers to a body that the stack does not have.
     #[error(
-        "stack \"{name}\" has {bodies} bodies, but body {body} is to be shifted: name one of its bodies"
+        "stack \"{name}\" has {bodies} bodies, but a shift is stated for body {body}: name one of its bodies"
     )]
     Shift {
         /// Name of the stack.

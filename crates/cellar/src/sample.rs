@@ -287,8 +287,8 @@ impl Prepared {
         let line =
             stated.line.map_or_else(String::new, |line| format!("line {line} of the file: "));
         let message = format!(
-            "{line}\"{first}\" and \"{second}\" overlap by {:.1} mm at the start: shift them apart, or shift the bodies that \
-             they carry or rest on as well",
+            "{line}\"{first}\" and \"{second}\" overlap by {:.1} mm at the start: shift them apart, or also shift the \
+             bodies above or below them",
             1e3 * depth
         );
         self.cellar.host.error(&[&stated.path], message).into()

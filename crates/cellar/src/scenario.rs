@@ -622,7 +622,8 @@ impl Cellar {
             };
             if door.position - 0.5 * door.width < 0.0 || door.position + 0.5 * door.width > side {
                 let message = format!(
-                    "the door \"{}\" reaches from {:.2} to {:.2} m on a side of {side} m: move it, or make it narrower",
+                    "the door \"{}\" reaches from {:.2} to {:.2} m, but its side of the room is {side} m long: move \
+                     the door, or make it narrower",
                     door.name,
                     door.position - 0.5 * door.width,
                     door.position + 0.5 * door.width
@@ -716,7 +717,7 @@ fn later_shocks(host: &Host) -> Result<Vec<MotionSpec>, ScenarioError> {
     }
     let shocks = motion.sections("sequence")?;
     let message = match shocks.len() {
-        0 => "a sequence has at least one shock: add [[motion.sequence]], or state one shock in [motion]".to_owned(),
+        0 => "a sequence needs at least one shock: add [[motion.sequence]], or state one shock in [motion]".to_owned(),
         many if many > MOST_SHOCKS => {
             format!("there are {many} shocks; a sequence has at most {MOST_SHOCKS}: keep the strongest")
         }
@@ -732,7 +733,10 @@ fn later_shocks(host: &Host) -> Result<Vec<MotionSpec>, ScenarioError> {
 /// Rejects settings that a single stack may have, but a stack in a room may not.
 fn check(host: &Host, stated: &Scenario) -> Result<(), ScenarioError> {
     if stated.stack().and_then(|stack| stack.space).is_some_and(|space| space.azimuth != 0.0) {
-        let message = "stacks are turned block by block: state `azimuth` in [[block]]".to_owned();
+        let message =
+            "in a cellar, whole blocks are turned, not single stacks: state `azimuth` in \
+             [[block]]"
+                .to_owned();
         return Err(host.error(&["stack.azimuth"], message));
     }
     if stated.run.until != Until::Rest {
@@ -786,7 +790,7 @@ fn read_block(reader: &Reader<'_>) -> Result<Block, ScenarioError> {
     }
     if !levels_by_row.is_empty() && levels_by_row.len() != rows as usize {
         let message = format!(
-            "there are {} numbers of levels for {rows} rows; state one for each row",
+            "`levels_by_row` has {} values for {rows} rows; state one value for each row",
             levels_by_row.len()
         );
         return Err(reader.inconsistent("levels_by_row", message));

@@ -378,7 +378,7 @@ fn add_pose(
     *last = line;
     match bodies.insert(body, pose) {
         Some(_) => Err(format!(
-            "a second pose of body \"{}\" of stack \"{name}\": leave one of them out",
+            "body \"{}\" of stack \"{name}\" has two poses: leave one of them out",
             model.stack.parts[body + 1].name
         )),
         None => Ok(()),

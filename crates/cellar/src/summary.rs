@@ -184,7 +184,8 @@ described! {
         pub impulse: Option<Range> as "N s",
         /// Mean number of barrels that fall from the stack.
         pub barrels_fallen: f64 as "1",
-        /// Expected volume of wine that the stack loses, under the central assumption on how many fallen barrels burst.
+        /// Expected volume of wine that the stack loses, under the central assumption about how many fallen barrels
+        /// burst.
         pub wine_lost: f64 as "m3",
         /// Distribution of the largest horizontal displacement of a body of the stack at the end of the run, over the
         /// variants in which the stack stands.

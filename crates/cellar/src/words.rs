@@ -74,7 +74,7 @@ pub(crate) fn longest_cut<'a>(shocks: impl Iterator<Item = &'a ShockAnswer>) -> 
 
 /// Returns the sentence that states that the ground motion of a shock outlasts the run of this shock by `cut` (s).
 pub(crate) fn followed(cut: f64) -> String {
-    format!("The run of a shock ends {cut:.1} s before its motion does.")
+    format!("The run of a shock ends {cut:.1} s before its motion ends.")
 }
 
 /// Formats a mean share with its interval, such as "80 % (95 % interval 61 % to 92 %)".
@@ -143,7 +143,7 @@ pub fn headline(summary: &CellarSummary) -> String {
 /// Returns the result of the run that is shown, for a sequence of shocks.
 fn of_sequence(summary: &CellarSummary) -> String {
     let cut = missing(summary).map_or(String::new(), |missing| {
-        format!("; the run of a shock ends {missing:.1} s before its motion does")
+        format!("; the run of a shock ends {missing:.1} s before its motion ends")
     });
     let shown = &summary.shown;
     let but = if shown.by_themselves + shown.knocked_over == 0 {
@@ -414,7 +414,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     }
     if let Some(spread) = room.spread.filter(|_| plan.stacks > 1) {
         all.push(format!(
-            "For each stack that falls by itself, {spread:.1} stacks fall on average, counting that stack."
+            "For each stack that falls by itself, {spread:.1} stacks fall on average, including that stack."
         ));
     }
     if room.barrels_fallen.most > 0.0 {

@@ -253,11 +253,11 @@ fn usual_changes_fit_or_say_why_not() {
     };
     let short = usual(&cellar(&["room.length=4.2 m", "aisle.aisle.to=[\"4.2 m\", \"3.2 m\"]"]));
     assert!(short[0].name.ends_with("the widest that fits"), "{}", short[0].name);
-    // Measured: with 1 m the row reaches 0.26 m into the wall.
+    // Measured: with 1 m the row extends 0.26 m beyond the wall.
     assert_eq!(short[0].changed.as_ref().unwrap().blocks[0].spacing, 0.74);
     let narrow = ["room.width=1.7 m", "aisle=[]", "place=[]", "door=[]"];
     let said = reason(&narrow, 4);
-    assert!(said.contains("into the far wall"), "{said}");
+    assert!(said.contains("beyond the far wall"), "{said}");
     for at in [1, 2, 3] {
         let said = reason(&["stack.levels=1"], at);
         assert!(said.contains("one level"), "{said}");
@@ -278,7 +278,7 @@ fn what_was_not_run_is_listed_with_its_reason() {
     let three = [layouts[0].clone(), layouts[1].clone(), third];
     let found = compared(&three, Vec::new(), vec![not]);
     let said = words::sentences(&found).join(" ");
-    assert!(said.contains("One level less was not run: it does not fit."), "{said}");
+    assert!(said.contains("The layout \"one level less\" was not run: it does not fit."), "{said}");
     assert!(said.contains("of all these differences jointly"), "{said}");
     let lines = table(&found).to_lines();
     assert_eq!(lines.len(), 5);

@@ -77,11 +77,11 @@ fn stacks_in_wrong_places_are_errors_with_place_and_remedy() {
         (&["block.1.aisle=0 m", "block.1.first=[\"0.46 m\", \"1 m\"]"][..], &[][..]),
         (
             &["block.1.first=[\"-0.2 m\", \"0.7 m\"]"],
-            &["reaches 0.20 m into the left wall", "move the block"],
+            &["extends 0.20 m beyond the left wall", "move the block"],
         ),
         (
             &["room.width=3 m", "aisle.aisle.to=[\"5 m\", \"2.9 m\"]", "door.door.position=2 m"],
-            &["into the far wall", "enlarge"],
+            &["beyond the far wall", "enlarge"],
         ),
         (
             &[
@@ -93,7 +93,7 @@ fn stacks_in_wrong_places_are_errors_with_place_and_remedy() {
         ),
         (
             &["column=[{ name = \"post\", at = [\"1 m\", \"1 m\"] }]"],
-            &["the column \"post\" stands in stack 1-1", "move the column or the block"],
+            &["the column \"post\" overlaps stack 1-1", "move the column or the block"],
         ),
     ] {
         let found = problems(changes);
@@ -131,11 +131,14 @@ fn a_room_that_cannot_be_is_one_error_with_its_place() {
         ("aisle.aisle.to=[\"0 m\", \"1 m\"]", "`to` needs larger coordinates"),
         ("aisle.aisle.to=[\"50 m\", \"3 m\"]", "outside the room"),
         ("place.1.at=[\"-1 m\", \"1 m\"]", "outside the room"),
-        ("door.door.position=4.9 m", "reaches from 4.30 to 5.50 m on a side of 5 m"),
+        (
+            "door.door.position=4.9 m",
+            "reaches from 4.30 to 5.50 m, but its side of the room is 5 m long",
+        ),
         ("block.1.rows=500", "barrels"),
-        ("block.1.levels_by_row=[5]", "state one for each row"),
+        ("block.1.levels_by_row=[5]", "state one value for each row"),
         ("room.length=-5 m", "greater than 0"),
-        ("stack.azimuth=90 deg", "block by block"),
+        ("stack.azimuth=90 deg", "whole blocks are turned"),
         ("stack.view=both", "leave `stack.view` out"),
         ("run.until=duration", "leave `run.until` out"),
     ] {

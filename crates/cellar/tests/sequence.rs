@@ -307,7 +307,10 @@ fn variants_that_are_kept_are_gathered_and_not_run_again() {
     assert_eq!(changed.cases[1].end_time, 1.25);
     let other = cellar("", &["run.duration=1 s"]);
     let refused = answer_with(&other, RunChoice::Typical, Some(&keep), on).unwrap_err().to_string();
-    assert!(refused.contains("variant-0000.json: it belongs to the cellar "), "{refused}");
+    assert!(
+        refused.contains("variant-0000.json: it belongs to a cellar with the hash "),
+        "{refused}"
+    );
     assert!(refused.contains("another folder"), "{refused}");
     // The draws of the constants depend on the number of variants.
     let more = stated.clone().with_variants(3);

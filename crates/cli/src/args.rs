@@ -59,7 +59,7 @@ pub(crate) enum Command {
     Aftershock(crate::commands::aftershock::AftershockArgs),
     /// Run two or more scenarios and compare them on one page.
     Compare(crate::commands::compare::CompareArgs),
-    /// Run every case of Candia, de la Llera and Almazán (2008), and compare their numbers with those of the program.
+    /// Run every case of Candia et al. (2008), and compare its numbers with those of the program.
     Reproduce(ReproduceArgs),
     /// Read, inspect, change and make ground motions.
     Motion(Box<crate::commands::motion::MotionArgs>),

@@ -53,7 +53,9 @@ fn printed(result: std::io::Result<()>) -> anyhow::Result<()> {
     const WHERE: &str = "cannot write to standard output";
     match result {
         _ if process::output_was_closed() => {
-            bail!("{WHERE}: it is closed; redirect it to a file (> result.txt) or to /dev/null")
+            bail!(
+                "{WHERE}, because it is closed; redirect it to a file (> result.txt) or to /dev/null"
+            )
         }
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context(WHERE),
         _ => Ok(()),

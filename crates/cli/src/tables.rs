@@ -36,7 +36,8 @@ impl TableArgs {
         match given.into_iter().find(|(given, _)| *given && !folder) {
             Some((_, option)) => {
                 bail!(
-                    "{option} applies only to tables, and none are written: give a folder for them, or omit {option}"
+                    "{option} applies only to tables, but this command writes none: give a folder for tables, or omit \
+                     {option}"
                 )
             }
             None => Ok(()),

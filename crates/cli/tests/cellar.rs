@@ -88,7 +88,7 @@ fn a_wrong_cellar_is_one_error_at_its_place_and_nothing_is_written() {
             ":4:",
             "more than 10000 barrels",
         ),
-        ("[[block]]\nstacks = 3\nfirst = [\"4 m\", \"1 m\"]\n", ":5:", "into the right wall"),
+        ("[[block]]\nstacks = 3\nfirst = [\"4 m\", \"1 m\"]\n", ":5:", "beyond the right wall"),
         (
             "[[aisle]]\nname = \"a\"\nfrom = [\"2 m\", \"2 m\"]\nto = [\"1 m\", \"1 m\"]\n",
             ":6:",
@@ -216,7 +216,7 @@ fn a_state_that_was_changed_by_hand_is_refused_at_its_line() {
         ("stack,dx (m)\n1-1\n", "survey.csv:2: there are 1 cells"),
         (&format!("{head}1-1,B1.1,0,0,0,2,0,0,0\n"), "survey.csv:2: columns qw, qx, qy, qz"),
         (&format!("{head}1-1,B1.1,0,0,0,1,0,0,0\n"), "there is no pose of body"),
-        (&format!("{head}1-1,B1.1,0,0,0,1,0,0,0\n1-1,B1.1,0,0,0,1,0,0,0\n"), "a second pose"),
+        (&format!("{head}1-1,B1.1,0,0,0,1,0,0,0\n1-1,B1.1,0,0,0,1,0,0,0\n"), "has two poses"),
         ("stack,body,x (m),dx (m)\n", "a file of poses has the columns"),
     ] {
         fs::write(folder.path().join("survey.csv"), text).unwrap();

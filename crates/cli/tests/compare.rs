@@ -193,7 +193,7 @@ fn layouts_that_cannot_be_compared_are_refused_before_anything_runs() {
         ),
         (
             vec!["demo-cellar", "--against=block.1.spacing=3 m"],
-            ["into the right wall", "enlarge the room"],
+            ["beyond the right wall", "enlarge the room"],
         ),
         (
             vec!["demo-cellar", "--usual", "--label=a", "--label=b"],

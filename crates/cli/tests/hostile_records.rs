@@ -171,7 +171,7 @@ fn records_of_pages_are_refused_by_the_option_that_names_them() {
         (&[("bad.csv", unit)], "`barrelstack motion convert` with --unit", &all),
         (
             &[("a.at2", &good), ("a.txt", &good)],
-            "the name \"a\"; give each a name of its own",
+            "the name \"a\"; give each motion its own name",
             &[FOLDER],
         ),
         (&[], "no file in the folder", &[FOLDER]),

@@ -101,7 +101,7 @@ fn files_that_are_cut_or_repeat_themselves() {
     refuse(
         "extends itself",
         b"schema = 1\nextends = \"hostile.toml\"\n",
-        &[":2:", "does one extend itself?"],
+        &[":2:", "whether one of them extends itself"],
     );
 }
 

@@ -467,7 +467,7 @@ fn mistakes_are_one_error_and_nothing_is_written() {
             &["process", first, "--low-pass", "1e-9 Hz"],
             &["channel E: low-pass", "of the duration, 0.02", "give a value in this range"],
         ),
-        (&["process", first, "--chain", "none"], &["has no steps"]),
+        (&["process", first, "--chain", "none"], &["no processing step is given"]),
         (&["match", first, "--to", "asce8:a=1"], &["asce8", "nzs1170"]),
         (&["match", first, "--to", "asce7:sds=1"], &["sd1 is missing"]),
         (&["match", first, "--to", "ec8:ag=0.3,site=F"], &["site", "\"F\""]),

@@ -282,7 +282,7 @@ fn what_a_command_reads_it_never_replaces() {
         let said = run(arguments);
         let words = stderr(&said);
         assert_eq!(said.status.code(), Some(2), "{arguments:?}: {words}");
-        assert!(words.contains("is never replaced"), "{arguments:?}: {words}");
+        assert!(words.contains("is never overwritten"), "{arguments:?}: {words}");
         assert!(words.contains("cannot write "), "{words}");
         assert_eq!(fs::read(at(name)).unwrap(), before, "{arguments:?}");
     };

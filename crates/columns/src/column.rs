@@ -189,7 +189,7 @@ impl Values {
                     Value::Number(value) => value.to_string(),
                     Value::Text(value) => format!("\"{value}\""),
                 };
-                return Err(format!("{value} does not fit its column"));
+                return Err(format!("{value} does not have the type of its column"));
             }
         }
         Ok(())

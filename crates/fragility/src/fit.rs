@@ -41,7 +41,7 @@ pub enum FitError {
     BadLevel(f64),
     /// Every case stood.
     #[error(
-        "no case failed up to an intensity of {largest}: the median is higher, and no curve can be \
+        "no case failed up to an intensity of {largest}: the median is above this intensity, and no curve can be \
          fitted; add cases of higher intensity"
     )]
     NothingFailed {
@@ -50,8 +50,8 @@ pub enum FitError {
     },
     /// Every case failed.
     #[error(
-        "every case failed down to an intensity of {smallest}: the median is lower, and no curve \
-         can be fitted; add cases of lower intensity"
+        "every case failed, even at the lowest intensity of {smallest}: the median is below this intensity, and no \
+         curve can be fitted; add cases of lower intensity"
     )]
     EverythingFailed {
         /// Lowest intensity of all cases.
@@ -60,8 +60,8 @@ pub enum FitError {
     /// The highest intensity at which a case survived is not above the lowest intensity at which a case
     /// failed.
     #[error(
-        "no case survived above {above} and none failed below {below}, so the dispersion cannot be determined; add \
-         cases around these intensities, or give the dispersion"
+        "no case survived above an intensity of {above}, and no case failed below {below}, so the dispersion cannot be \
+         determined; add cases around these intensities, or give the dispersion"
     )]
     Separated {
         /// Highest intensity at which a case survived.
@@ -71,8 +71,8 @@ pub enum FitError {
     },
     /// Failure does not become likelier as intensity increases.
     #[error(
-        "the chance of failure does not increase with intensity, so no fragility curve describes the cases; look at \
-         the raw fractions, and try another intensity measure"
+        "the probability of failure does not increase with intensity, so no fragility curve describes the cases; \
+         compare the share of failed cases at each intensity, and try another intensity measure"
     )]
     NotIncreasing,
     /// The iteration did not converge.
@@ -82,8 +82,7 @@ pub enum FitError {
     NotConverged,
     /// Too few resampled data sets determine a curve.
     #[error(
-        "only {usable} of {replicates} resampled data sets determine a curve; add cases, or give \
-         the dispersion"
+        "a curve can be fitted to only {usable} of {replicates} resampled data sets; add cases, or give the dispersion"
     )]
     Unstable {
         /// Number of resampled data sets that determine a curve.

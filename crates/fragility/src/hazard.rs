@@ -9,7 +9,7 @@ pub enum HazardError {
     #[error("a hazard curve needs at least two rows, found {0}")]
     Short(usize),
     /// A number is not valid as an intensity or a rate.
-    #[error("row {}: expected {what} that is a positive, finite number, found {found}", row + 1)]
+    #[error("row {}: expected {what} that is positive and finite, found {found}", row + 1)]
     Invalid {
         /// Index of the row, counted from 0.
         row: usize,
@@ -33,8 +33,8 @@ pub enum HazardError {
     },
     /// Rates increase with intensity.
     #[error(
-        "row {}: expected an annual rate of at most {before}, found {found}; stronger shaking \
-         cannot be exceeded more often",
+        "row {}: expected an annual rate of at most {before}, found {found}; a higher intensity cannot be exceeded \
+         more often than a lower one",
         row + 1
     )]
     Rising {

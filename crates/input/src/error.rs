@@ -235,10 +235,12 @@ fn addition(example: &str) -> String {
 
 /// Returns the advice on a quantity; empty if the reason contains advice.
 fn correction(reason: &QuantityError, example: &str) -> String {
-    match reason {
-        QuantityError::Malformed { reason, .. } if reason.contains("write") => String::new(),
-        _ => format!("; write for example {example}"),
+    if let QuantityError::Malformed { reason, .. } = reason
+        && reason.contains("write `")
+    {
+        return String::new();
     }
+    format!("; write for example {example}")
 }
 
 fn suggestion(nearest: Option<&str>) -> String {

@@ -163,7 +163,7 @@ impl Table {
         }
         if rows.is_empty() {
             return Err(unsuited(
-                "it has a header but no measurements; write one line per measurement below it",
+                "it has a header but no measurements; write one line per measurement below the header",
             ));
         }
         Ok(Self { file: file.to_owned(), header_line, columns, rows })

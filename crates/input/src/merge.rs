@@ -134,7 +134,7 @@ fn apply_override(
     let text = &sources.overrides[index];
     let Some((path, value)) = text.split_once('=') else {
         return Err(wrong(
-            "an override is written path=value, such as `stack.levels=5`".to_owned(),
+            "an override must have the form path=value, such as `stack.levels=5`".to_owned(),
         ));
     };
     let keys: Vec<&str> = path.split('.').map(str::trim).collect();
@@ -240,7 +240,7 @@ pub fn apply_overrides(
         if let Some(known) = set.iter().find(undone).filter(|known| texts[**known] != texts[index])
         {
             let message = format!(
-                "it contradicts the override `{}`; keep one of them",
+                "this override contradicts `{}`; keep one of the two",
                 crate::quantity::shorten(&texts[*known])
             );
             return Err(sources.error(Origin::Override(index), Problem::Inconsistent { message }));

@@ -25,7 +25,7 @@ pub enum QuantityError {
         text: String,
     },
     /// The number exceeds the range of double precision.
-    #[error("`{text}` is too large to compute with")]
+    #[error("`{text}` exceeds the range of double precision")]
     Overflow {
         /// The input text, truncated to 60 characters.
         text: String,
@@ -55,7 +55,7 @@ pub enum QuantityError {
         reason: &'static str,
     },
     /// The unit `gal` has two meanings, and no expected dimension selects one of them.
-    #[error("the unit `gal` in `{text}` may be a US gallon or cm/s^2; write `gallon` or `Gal`")]
+    #[error("the unit `gal` in `{text}` may mean the US gallon or cm/s^2; write `gallon` or `Gal`")]
     Ambiguous {
         /// The input text, truncated to 60 characters.
         text: String,

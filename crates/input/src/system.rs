@@ -108,7 +108,7 @@ pub fn replaceable(path: &Path) -> io::Result<()> {
     };
     if inputs().as_ref().is_some_and(is_input) {
         return Err(io::Error::other(
-            "it is an input of this command and is never replaced; name another file or folder",
+            "it is an input of this command and is never overwritten; name another file or folder",
         ));
     }
     Ok(())

@@ -224,7 +224,7 @@ fn tokenize(text: &str) -> Result<Vec<Token>, UnitError> {
                     tokens.push(Token::Power(power.to_string()));
                 }
             }
-            ',' => return Err(UnitError::Malformed("write the decimal mark as a point")),
+            ',' => return Err(UnitError::Malformed("write a decimal point instead of the comma")),
             _ if c.is_ascii_digit() || c == '.' || c == '-' || c == '+' => {
                 return Err(UnitError::Malformed(
                     "there is a second number where a unit was expected; write a power as `m^2`",
@@ -307,7 +307,7 @@ fn halves(power: &str) -> Result<i8, UnitError> {
         power.parse().map_err(|_| UnitError::Malformed("`^` must be followed by a power"))?;
     let halves = value * 2.0;
     if halves.fract() != 0.0 || halves == 0.0 || halves.abs() > 12.0 {
-        return Err(UnitError::Malformed("a power must be a multiple of 0.5 between -6 and 6"));
+        return Err(UnitError::Malformed("an exponent must be a multiple of 0.5 between -6 and 6"));
     }
     #[expect(clippy::cast_possible_truncation, reason = "a whole number of at most 12 in size")]
     Ok(halves as i8)

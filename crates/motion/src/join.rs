@@ -110,7 +110,7 @@ impl Record {
         let files = format!("{} and {}", one.file, other.file);
         for a in &one.channels {
             if let Some(what) = other.channels.iter().find_map(|b| a.site.differs(&b.site)) {
-                return Some(format!("{files} are of {what}"));
+                return Some(format!("{files} come from {what}"));
             }
         }
         // Files made by the user may be combined with files of a publisher.
@@ -229,7 +229,7 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
         let misfit = misfit(tail, head);
         if !(misfit <= LARGEST_MISFIT) {
             return Err(refuse(format!(
-                "channel {name}: in the overlap, {} differs by {:.0} % from the preceding part",
+                "channel {name}: in the overlap, {} differs by {:.0} % from the preceding file",
                 part.file,
                 100.0 * misfit
             )));

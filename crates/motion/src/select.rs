@@ -197,7 +197,10 @@ impl Record {
     fn require_one_site(&self, one: &Channel, other: &Channel) -> Result<(), MotionError> {
         match one.site.differs(&other.site) {
             Some(what) if !self.mixed => Err(MotionError::mismatch(
-                format!("channels {} and {} of {} are of {what}", one.name, other.name, self.file),
+                format!(
+                    "channels {} and {} of {} come from {what}",
+                    one.name, other.name, self.file
+                ),
                 "choose channels of the same sensor",
             )),
             _ => Ok(()),

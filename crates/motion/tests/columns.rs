@@ -248,7 +248,7 @@ fn times_are_taken_in_their_unit_and_every_fault_has_its_own_reason() {
     }
     refused(
         &format!("time,acc (g)\n{}", pairs(1e3)),
-        "a time column with steps of a strong-motion record",
+        "a time step that is plausible for a strong-motion record",
     );
     refused(
         &format!("time (days),acc (g)\n{}", pairs(1.0)),

@@ -52,7 +52,7 @@ fn parameters(fit: &[String]) -> PyResult<Vec<Parameter>> {
         let parameter = Parameter::NAMES.iter().find(|(name, _)| name == word);
         let Some((_, parameter)) = parameter.filter(|(_, one)| !found.contains(one)) else {
             return Err(PyValueError::new_err(format!(
-                "fit: expected some of {known}, each once, found \"{word}\""
+                "fit: expected one or more of {known}, each at most once, found \"{word}\""
             )));
         };
         found.push(*parameter);

@@ -321,7 +321,7 @@ impl Record {
             "at2" => text(write::at2(&self.inner)),
             other => {
                 return Err(PyValueError::new_err(format!(
-                    "a record is written as .npz, .txt, .csv or .at2, not as .{other}"
+                    "a record can be written as .npz, .txt, .csv or .at2, not as .{other}"
                 )));
             }
         };
@@ -406,7 +406,7 @@ pub(crate) fn measured(measure: &str, text: &str) -> PyResult<f64> {
         "s" => Dimension::TIME,
         unit => {
             return Err(PyValueError::new_err(format!(
-                "{measure} is given as a number in {unit}, found \"{text}\""
+                "{measure} must be a number in {unit}, found \"{text}\""
             )));
         }
     };

@@ -72,7 +72,7 @@ pub(crate) fn chosen<T: Copy, const N: usize>(
     if let Some(other) = names.iter().find(|given| !all.iter().any(|one| name(*one) == **given)) {
         let known = all.map(&name).join(", ");
         return Err(PyValueError::new_err(format!(
-            "there is no {what} {other:?}; there are {known}"
+            "there is no {what} {other:?}; choose from {known}"
         )));
     }
     let requested = |one: &T| names.is_empty() || names.iter().any(|given| *given == name(*one));

@@ -294,7 +294,7 @@ pub(crate) fn schema(of: &str) -> PyResult<String> {
         "summary" => barrelstack_report::described::document::<Summary>("summary"),
         other => {
             return Err(PyValueError::new_err(format!(
-                "there is no schema of \"{other}\"; there are \"scenario\", \"study\" and \"summary\""
+                "there is no schema of \"{other}\"; choose \"scenario\", \"study\" or \"summary\""
             )));
         }
     };
@@ -308,7 +308,7 @@ pub(crate) fn reference(of: &str) -> PyResult<String> {
         "scenario" => Ok(fields_of::markdown()),
         "study" => Ok(barrelstack_campaign::study::reference()),
         other => Err(PyValueError::new_err(format!(
-            "there is no reference of \"{other}\"; there are \"scenario\" and \"study\""
+            "there is no reference of \"{other}\"; choose \"scenario\" or \"study\""
         ))),
     }
 }

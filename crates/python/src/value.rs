@@ -43,7 +43,7 @@ fn of(value: &Bound<'_, PyAny>, key: &str) -> PyResult<Value> {
         return value.extract().map(Value::Text);
     }
     Err(PyTypeError::new_err(format!(
-        "`{key}` has the type {}; a scenario contains texts, numbers, booleans, lists and dicts",
+        "`{key}` has the type {}; a scenario can contain only texts, numbers, booleans, lists and dicts",
         value.get_type().name()?
     )))
 }

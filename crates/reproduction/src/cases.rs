@@ -51,7 +51,7 @@ impl Motion {
     /// Returns the name of the motion for captions, with a remark if it is not the paper's record.
     pub(super) fn words(&self) -> String {
         let name = self.name();
-        if self.is_papers() { name } else { format!("{name}, not the paper's record") }
+        if self.is_papers() { name } else { format!("{name} instead of the paper's record") }
     }
 }
 

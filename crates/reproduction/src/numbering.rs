@@ -26,7 +26,7 @@ pub(super) fn table() -> Table {
     let pair =
         |number: u32, columns: u32| Cell::text(format!("{number} = {}", name(number, columns)));
     Table::of(
-        "The paper's body numbers and the names on this page: B level.column for barrels, R level for \
+        "The paper's body numbers and the names on this page: B with level.column for barrels, R with the level for \
          racks. The paper does not list these numbers; the numbering was inferred from its text.",
         (1..=4).rev(),
         &[

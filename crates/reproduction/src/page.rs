@@ -23,8 +23,8 @@ pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) ->
                 "All cases use one geometry. The paper's text gives no dimension of its racks, so the \
                  rack is a reconstruction; no parameter is fitted to a single case."
                     .into(),
-                "Where a number differs, the studies below change one quantity at a time and show its \
-                 effect."
+                "If a number differs from the published number, the studies below show the effect of changing one \
+                 quantity at a time."
                     .into(),
             ],
             tone: Tone::Neutral,
@@ -81,9 +81,9 @@ fn warnings(motion: &Motion) -> Vec<String> {
             significant(pga / barrelstack_motion::STANDARD_GRAVITY, 3)
         )],
         Motion::Bundled => vec![format!(
-            "The paper's record cannot be distributed with the program, and no file was given. The six \
-             barrels are shaken by the bundled record of South Napa instead; results that depend on the \
-             motion are shown but not compared. To get the paper's record, {OBTAIN}."
+            "The paper's record cannot be distributed with the program, and no record file was given. The six barrels \
+             are shaken by the bundled record of South Napa instead; results that depend on the motion are shown but \
+             not compared. To get the paper's record, {OBTAIN}."
         )],
     }
 }
@@ -96,10 +96,9 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
     let mut blocks =
         vec![Block::heading(2, "Published results and our results"), Block::Table(overview(rows))];
     blocks.push(text(
-        "A number agrees if it is within ±20 % of the published number; a finding agrees if the \
-         same event occurs. Some numbers also have a wider band that the project accepts, since \
-         the paper does \
-         not state its geometry.",
+        "A number agrees if it is within ±20 % of the published number; a finding agrees if the same event occurs. For \
+         some numbers, the project also accepts a wider band, since the paper does not state the dimensions of its \
+         racks.",
     ));
     let reasons = vec![Block::Table(reasons(rows))];
     let summary = "How each row is measured, and why it differs";
@@ -111,7 +110,8 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
     blocks.extend(along(results));
     if results.studies.is_empty() {
         blocks.push(text(
-            "The studies were left out. They show the effects of single quantities, and of contact parameters changed by 10 %.",
+            "The studies were left out. They show the effect of changing one quantity at a time, and of changing \
+             contact parameters by 10 %.",
         ));
     } else {
         blocks.push(Block::heading(2, "Contact parameters changed by 10 %"));
@@ -137,7 +137,7 @@ const NOT_COMPARED: [&str; 5] = [
      our figures are shown without those of the paper.",
     "Figs. 1 to 4, which define the model; the program's own tests check the equations.",
     "The dimensions of Fig. 2, which the text does not state.",
-    "The calibration of k, c and μ on barrels and racks, which the paper leaves to its reference 5.",
+    "The calibration of k, c and μ on barrels and racks, for which the paper cites its reference 5.",
     "The photographs of the shaking-table test, reference 1 of the paper.",
 ];
 
@@ -229,8 +229,8 @@ fn stand_in(results: &Results) -> String {
     };
     format!(
         "This is not the paper's motion, so the results cannot be compared with the paper's numbers. Results of the \
-         six barrels under {}: with μ 0.4, {} and a residual slip of {} cm; with μ 0.1, {} and a residual slip of {} \
-         cm.",
+         six barrels under {}: for μ = 0.4, {}, with a residual slip of {} cm; for μ = 0.1, {}, with a residual slip \
+         of {} cm.",
         results.motion.name(),
         what(six),
         slip(six),
@@ -261,13 +261,13 @@ fn figure_7(results: &Results) -> Vec<Block> {
         figures::contact_bodies(
             full,
             "figure-7a-pairs",
-            "The transverse section with the paper's body numbers. Each arrow starts in a contact body, \
-             which carries the nodes, and ends in its target body, which has the surface.",
+            "The transverse section with the paper's body numbers. Each arrow points from a contact body, which \
+             carries the nodes, to its target body, whose surface the nodes touch.",
         ),
         figures::strip(
             &full_scene,
             "figure-7a-sequence",
-            "The collapse in the transverse section, at its main events.",
+            "The main events of the collapse, in the transverse section.",
             figures::events(full),
         ),
         figures::pairs(

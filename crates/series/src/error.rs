@@ -25,7 +25,8 @@ pub enum MotionError {
     },
     /// The requested measure of the motion is zero.
     #[error(
-        "{measure} of \"{motion}\" is zero, so no factor brings it to {target}; choose another component or another record"
+        "{measure} of \"{motion}\" is zero, so no factor can scale it to {target}; choose another component or another \
+         record"
     )]
     Zero {
         /// Name of the measure.
@@ -54,7 +55,9 @@ pub enum MotionError {
         remedy: String,
     },
     /// An iterative computation did not reach its tolerance.
-    #[error("{what} reached {reached} after {rounds} rounds, but {wanted} is required; {remedy}")]
+    #[error(
+        "{what} reached {reached} after {rounds} iterations, but at most {wanted} is allowed; {remedy}"
+    )]
     NotConverged {
         /// Name of the computation, such as "spectral matching".
         what: String,

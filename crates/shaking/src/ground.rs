@@ -141,7 +141,7 @@ pub fn scaled(
             (Some(_), MotionSource::Record(_)) => {}
             (Some(over), MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_)) => {
                 return Err(MotionError::NotScalable {
-                    measure: format!("{measure} ({over} of both horizontals)"),
+                    measure: format!("{measure} ({over} of both horizontal components)"),
                     reason: "only a record has two horizontal components".to_owned(),
                 });
             }
@@ -183,7 +183,7 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
                 Err(_) if !record.channels.iter().any(Channel::is_vertical) => {
                     let file = &record.file;
                     let warning = format!(
-                        "{file} has no vertical component; the ground shakes horizontally only"
+                        "{file} has no vertical component; the ground shakes only horizontally"
                     );
                     warnings.push(warning);
                     record.ground_motion(&horizontal, None, &processing)?
@@ -271,7 +271,7 @@ fn scaled_by_both(
     let factor = over.scale_factor(measure, &first, &second, value)?;
     let mut scaled = motion.scaled(factor);
     scaled.provenance.push(format!(
-        "this factor scales {measure} ({over} of both horizontals) to {value} {}",
+        "this factor scales {measure} ({over} of both horizontal components) to {value} {}",
         measure.unit()
     ));
     Ok(scaled)

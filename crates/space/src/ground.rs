@@ -58,8 +58,8 @@ impl Ground {
         let turned = turn_to_other(motion)?.filter(|_| second.is_some());
         match turned {
             None if second.is_some() => warnings.push(
-                "the record does not state the directions of its horizontal components: the second is assumed to be \
-                 perpendicular to the first, counterclockwise from it"
+                "the record does not state the directions of its horizontal components: the second is assumed to point \
+                 90° counterclockwise from the first"
                     .to_owned(),
             ),
             Some(turn) if (turn % 180.0 - 90.0).abs() > SQUARE => warnings.push(format!(

@@ -189,9 +189,9 @@ fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
-            "Ranges span the 5th to the 95th percentile of the variants. The first body is the first that loses its \
-             seat; its direction is the direction in which it leaves the seat. The direction of a barrel that fell{} \
-             is the direction from its position at rest to its position at the end of the variant.",
+            "Ranges span the 5th to the 95th percentile of the variants. The first body is the body that loses its \
+             seat first; its direction is the direction in which it leaves the seat. The direction of a barrel that \
+             fell{} is the direction from its position at rest to its position at the end of the variant.",
             spread.counted("the first loss of a seat")
         ),
         &[("", ""), ("in three dimensions", "")],
@@ -278,8 +278,8 @@ fn fates(run: &Run) -> Table {
     let time = |at: Option<f64>| Cell::measured(at, 2);
     let length = |value: f64| Cell::Measured(100.0 * value, 1);
     Table::of(
-        "Slips are displacements relative to the supports of a body, before the first loss of \
-         seat. All other displacements are those at the end.",
+        "Slips are displacements of a body relative to its supports, before the first loss of a seat. All other \
+         displacements are those at the end of the run.",
         run.stack.parts.iter().zip(&run.fates).skip(1),
         &[
             ("body", "", &|(part, _)| Cell::verbatim(&part.name)),

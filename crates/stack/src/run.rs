@@ -317,9 +317,8 @@ pub fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
         return Ok(());
     }
     Err(RunFailure::Duration(format!(
-        "{end_time:e} s in steps of {step:e} s are {steps:.0e} steps, more than a run may take \
-         ({MOST_STEPS:.0e}): shorten run.duration, or check whether run.step and the stiffness of the \
-         contacts have the right unit"
+        "a run of {end_time:e} s with a step of {step:e} s has {steps:.0e} steps, but at most {MOST_STEPS:.0e} are \
+         allowed: shorten run.duration, or check whether run.step and the stiffness of the contacts have the right unit"
     )))
 }
 

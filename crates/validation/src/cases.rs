@@ -142,8 +142,8 @@ pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
         (Quantity::OverturningBorder | Quantity::UpliftBorder, Some("m/s")) => "m/s",
         (quantity, unit) => {
             return Err(refuse(&format!(
-                "expect.unit: a boundary needs \"g\" or \"m/s\", and a time or a displacement must \
-                 have no unit; found {unit:?} for {quantity:?}"
+                "expect.unit: the unit of a boundary must be \"g\" or \"m/s\", and a time or a displacement must be \
+                 stated without a unit; found {unit:?} for {quantity:?}"
             )));
         }
     };

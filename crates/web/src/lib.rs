@@ -355,7 +355,7 @@ fn read(bytes: &[u8]) -> Result<Opened<'_>, String> {
     let cut = |what: &str| format!("the request ends within {what}");
     let (length, rest) = bytes.split_first_chunk::<4>().ok_or_else(|| cut("its length"))?;
     let length = usize::try_from(u32::from_le_bytes(*length)).unwrap_or(usize::MAX);
-    let (head, mut rest) = rest.split_at_checked(length).ok_or_else(|| cut("its head"))?;
+    let (head, mut rest) = rest.split_at_checked(length).ok_or_else(|| cut("its header"))?;
     let request: Request = serde_json::from_slice(head)
         .map_err(|error| format!("cannot read the head of the request: {error}"))?;
     let mut records = BTreeMap::new();
@@ -366,7 +366,7 @@ fn read(bytes: &[u8]) -> Result<Opened<'_>, String> {
     }
     let (trails, rest) = rest.split_at_checked(request.trails).ok_or_else(|| cut("its trails"))?;
     if !rest.is_empty() {
-        return Err(format!("the request has {} bytes more than its head states", rest.len()));
+        return Err(format!("the request has {} bytes more than its header states", rest.len()));
     }
     Ok(Opened { request, records, trails })
 }

@@ -63,8 +63,8 @@ fn given(planes: &[Plane], request: Request) -> Result<Vec<Vec<CaseResult>>, Str
     let whole = cases.iter().all(|plane| plane.len() == numbers.len());
     if cases.len() != planes.len() || !whole || numbers.first() != Some(&0) {
         return Err(format!(
-            "`cases` must have one list for each plane (planes: {}), with one result for each of `numbers`; the first \
-             of `numbers` must be 0",
+            "`cases` must have one list for each plane (planes: {}), and each list must have one result for each value \
+             in `numbers`; the first value in `numbers` must be 0",
             planes.len()
         ));
     }

@@ -82,7 +82,7 @@ fn shares_in_any_order_have_the_spread_of_all() {
 #[test]
 fn a_verdict_without_the_stack_as_it_is_stated_is_refused() {
     let refused = answer_to(&request(RequestKind::Verdict, &[1])).unwrap_err();
-    assert!(refused.contains("the first of `numbers` must be 0"), "{refused}");
+    assert!(refused.contains("the first value in `numbers` must be 0"), "{refused}");
 }
 
 #[test]

@@ -103,8 +103,8 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
 /// Tabulates the demands on each stack until its first loss of seat.
 pub(super) fn demands(sides: &[Side]) -> Table {
     let mut table = table(
-        "Demands on each stack until its first loss of a seat; the slip at the end of the run is the only exception. \
-         The report of a single run also states the demands over the whole run.",
+        "Demands on each stack until its first loss of a seat, except the slip at the end of the run. The report of a \
+         single run also states the demands over the whole run.",
         &[("demand", ""), ("unit", "")],
         sides,
         &[],

@@ -113,7 +113,7 @@ impl Rendering {
         }
         match self.between {
             Some([from, to]) if !(from >= 0.0 && to > from) => Err(format!(
-                "expected two times (s), the first not negative and the second later, found {from} and {to}"
+                "expected a start time of 0 s or more and a later end time, found {from} s and {to} s"
             )),
             Some([from, _]) if from > end_time => Err(format!(
                 "the run ends at {end_time:.2} s, so there is nothing to render after {from} s; choose an earlier start"

@@ -166,7 +166,7 @@ impl Remedy {
         };
         let choice = match self.candidates {
             0 | 1 => String::new(),
-            many => format!(", corrected for trying up to {many} changes"),
+            many => format!(", corrected for testing up to {many} changes"),
         };
         format!(" At most {most} would fall (95 % confidence{choice}).")
     }
@@ -232,13 +232,13 @@ impl Remedy {
         let [stand, tried] =
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
-            "Changes that were tried, all of them with the same variants. A change suffices if at least {:.0} % of \
-             the variants stand{stand}. The variants are run in blocks, beginning with the variants that are likely to \
-             fall; a change is rejected after the first block at whose end too many variants have fallen, so the \
-             share of stacks that fall with a rejected change is not known. The intervals hold simultaneously, with \
-             95 % confidence, for all {} changes that may be tried{tried}. With a probability of 95 %, the range over \
-             the uncertain constants contains the share of stacks that fall if friction, stiffness and damping of the \
-             seats are drawn from their distributions; the range includes the sampling error. The last column \
+            "Changes that were tried, all of them with the same variants. A change suffices if at least {:.0} % of the \
+             variants stand{stand}. The variants are run in blocks, beginning with the variants that are likely to \
+             fall. A change is rejected as soon as too many variants have fallen at the end of a block, so the share \
+             of stacks that fall with a rejected change is not known. The intervals hold simultaneously, with 95 % \
+             confidence, for all {} changes that may be tried{tried}. If friction, stiffness and damping of the seats \
+             are drawn from their distributions, the share of stacks that fall lies within the range over the \
+             uncertain constants with a probability of 95 %. The range includes the sampling error. The last column \
              gives the share of random draws of the uncertain constants in which fewer stacks fall with the change \
              than without it; the same draws are used for every change. Straps are assumed not to slip on the barrels \
              and racks that they tie.",

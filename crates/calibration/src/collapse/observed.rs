@@ -95,8 +95,8 @@ impl Observed {
         }
         if tests.iter().any(|test| !test.falls.is_empty() && test.repeats_itself()) {
             warnings.push(
-                "\"first fall\" and \"first barrel\" are ignored in rows that give fall times of barrels, \
-                 which contain the same information"
+                "\"first fall\" and \"first barrel\" are ignored in rows that give the fall times of barrels, because \
+                 these times contain the same information"
                     .to_owned(),
             );
         }

@@ -204,8 +204,8 @@ impl Statements {
         for quake in &read.earthquake {
             if !(0.0..=MOST_MOTION).contains(&quake.motion) {
                 return Err(StatementsError(format!(
-                    "{file}: earthquake `{}`: `motion`, a standard deviation of a logarithm, must lie between 0 and \
-                     {MOST_MOTION}, found {}",
+                    "{file}: earthquake `{}`: `motion` is the standard deviation of a logarithm and must lie between 0 \
+                     and {MOST_MOTION}, found {}",
                     quake.name, quake.motion
                 )));
             }
@@ -249,7 +249,7 @@ impl Statements {
                 Some(_) => continue,
             };
             return Err(StatementsError(format!(
-                "statement `{name}`: {fault}; those with a likelihood are: {}",
+                "statement `{name}`: {fault}; the statements with a likelihood are: {}",
                 known()
             )));
         }
@@ -264,8 +264,8 @@ impl Statements {
         };
         if let Some((other, _)) = found.iter().find(|(other, _)| other.name != quake.name) {
             return Err(StatementsError(format!(
-                "the statements are about two earthquakes, {} and {}, but the scenario has only one motion: choose \
-                 statements about one earthquake from these: {}",
+                "the statements are about two earthquakes, {} and {}, but the scenario has only one motion; choose \
+                 statements about one of them: {}",
                 quake.name,
                 other.name,
                 known()

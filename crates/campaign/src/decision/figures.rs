@@ -75,7 +75,7 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
         curve.limit.words(),
         measure.label,
         if curve.fit.is_ok() {
-            " Line: the lognormal curve of maximum likelihood; shaded: its 95 % band."
+            " Line: the lognormal curve fitted by maximum likelihood; shaded: its 95 % band."
         } else {
             ""
         }
@@ -100,8 +100,8 @@ pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
     let series = curves.iter().enumerate().map(series_of).collect();
     Figure::new(
         "limit-states",
-        "Chance of each limit state. Lines are fitted curves; where the cases determine no curve, dots show the raw \
-         fractions with their 95 % intervals.",
+        "Chance of each limit state. Lines are fitted curves; where no curve can be fitted to the cases, dots show the \
+         raw fractions with their 95 % intervals.",
         Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
     )
 }
@@ -125,8 +125,8 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
     Figure::new(
         "modes",
         "Chance of collapse in each mode (cumulative incidence). The modes compete: their chances add up to the chance \
-         of collapse, and one mode may become rarer where another becomes more frequent. The lines divide the curve of \
-         collapse among the modes by probit regression.",
+         of collapse, and one mode may become rarer where another becomes more frequent. The chance of collapse is \
+         divided among the modes by probit regression.",
         Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
     )
 }

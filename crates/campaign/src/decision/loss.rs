@@ -60,8 +60,8 @@ impl Losses {
         }
         if cases.hunted {
             return Err(
-                "the levels were chosen by searches for collapse, so that a mean over the cases does not \
-                 describe any single level of shaking"
+                "the levels were chosen by searches for collapse, so a mean over the cases does not apply to a given \
+                 level of shaking"
                     .to_owned(),
             );
         }

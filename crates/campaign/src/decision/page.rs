@@ -107,9 +107,9 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     blocks.push(Block::Table(tables::measures(decision)));
     blocks.push(text(
         "Dispersion is the scatter that a measure leaves unexplained: the smaller it is, the fewer records are needed. \
-         Concordance is the probability that, of a case that collapsed and a case that stood, the collapsed case had \
-         the stronger shaking by this measure (0.5 is no better than chance). A small p in the last columns means that \
-         the measure under \"tested against\" adds information: the measure of the row is then not sufficient.",
+         Concordance is the probability that this measure is larger for a case that collapsed than for a case that \
+         stood (0.5 is no better than chance). A small p in the last columns means that the measure under \"tested \
+         against\" adds information to the measure of the row, which is then not sufficient.",
     ));
     blocks.push(heading("Motions"));
     blocks.push(Block::Table(motions(decision, made)));
@@ -158,8 +158,8 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
         }
         Ok([median, dispersion]) => {
             said.push(format!(
-                "The curve is the lognormal curve of maximum likelihood (Baker 2015). Its standard errors are {} of \
-                 ln θ and {} of ln β ({}).",
+                "The lognormal curve is fitted by maximum likelihood (Baker 2015). Its standard errors are {} of ln θ \
+                 and {} of ln β ({}).",
                 significant(median, 2),
                 significant(dispersion, 2),
                 if curve.left_out.is_some() {
@@ -174,7 +174,8 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
                         .to_owned()
                 }
                 BandKind::None => {
-                    "There is no band: if one particular record is omitted, the remaining cases determine no curve."
+                    "There is no band: if one particular record is omitted, no curve can be fitted to the remaining \
+                     cases."
                         .to_owned()
                 }
                 BandKind::Likelihood => {

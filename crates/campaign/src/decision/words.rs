@@ -288,8 +288,8 @@ pub(super) fn warnings(
         }
         if collapse.fit.is_ok() && collapse.band_kind == BandKind::None {
             said.push(format!(
-                "The curve depends on one of the {} records: if this record is omitted, the remaining cases determine \
-                 no curve, so no interval is given. Add records.",
+                "The curve depends on one of the {} records: if this record is omitted, no curve can be fitted to the \
+                 remaining cases, so no interval is given. Add records.",
                 cases.records.len()
             ));
         }

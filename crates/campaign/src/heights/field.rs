@@ -24,16 +24,16 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
          2014). Most stacks that collapsed in the county stood on portable racks for two barrels (FEMA P-1024, as \
          reported by Wines & Vines 2017)."
             .into(),
-        "This is a weak check. No shares by height were published, and the shaking at the stores was not recorded. \
-         The stacks stood in rows, where a falling stack can knock down its neighbors; this makes more stacks fall, \
-         and it is not modeled here."
+        "This is a weak check. The share of stacks that collapsed was not published for each height, and the shaking \
+         at the stores was not recorded. The stacks stood in rows, where a falling stack can knock down its neighbors; \
+         this effect makes more stacks fall and is not modeled here."
             .into(),
         if all.request.in_space {
             "Each run is three-dimensional, under all components of its motion; the components of a record are scaled \
              by one factor."
         } else {
-            "Each run is in one plane. A real stack is shaken across and along the barrels at once, so that its chance of \
-             collapse lies between the larger of the two chances and their sum."
+            "Each run is in one plane. A real stack is shaken across and along the barrels at the same time: its \
+             chance of collapse lies between the larger of the two chances and their sum."
         }
         .into(),
     ]));

@@ -238,8 +238,8 @@ fn over_constants_table(all: &Heights) -> Table {
     by_height(
         all,
         format!(
-            "95 % range of the chance of collapse over the uncertain constants of the seats{}, and the constant on \
-             which the chance depends most.",
+            "Chance of collapse: 95 % range over the uncertain constants of the seats{}, and the constant on which the \
+             chance depends most.",
             in_planes(all, ", in the direction with the higher upper end", "")
         ),
         |levels, velocity| {
@@ -349,8 +349,8 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(format!(
             "Each cell shows the share of stacks that collapse{}, and in brackets the range of the true chance; each \
              end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or \
-             below, so that a stack whose chance is above this limit is rated low in at most one of 20 studies. \
-             ! medium: at most {:.0} %. ✗ high: more. These limits were chosen by judgment.",
+             below; if the chance of a stack is above this second limit, at most one of 20 studies rates the stack \
+             low. ! medium: at most {:.0} %. ✗ high: more. These limits were chosen by judgment.",
             in_planes(all, ", in the direction with the higher upper bound", ""),
             100.0 * LOW.0,
             100.0 * LOW.1,
@@ -358,16 +358,16 @@ fn blocks(all: &Heights) -> Vec<Block> {
         )),
         Block::Table(over_constants_table(all)),
         text(
-            "With a probability of 95 %, the range contains the chance of collapse of a stack whose friction, \
-             stiffness and damping are drawn once from their distributions; it includes the sampling error. The \
-             brackets in the table above are for stacks whose constants are drawn anew for every run. A constant is \
-             named only if it changes the chance by 20 percentage points or more over its own range. Measure this \
-             constant, and state its value in a scenario of your own.",
+            "If the friction, stiffness and damping of a stack are drawn once from their distributions, its chance of \
+             collapse lies within the range with a probability of 95 %. The range includes the sampling error. The \
+             ranges in brackets in the table above are for stacks whose constants are drawn anew for every run. A \
+             constant is named only if it changes the chance by 20 percentage points or more over its own range. \
+             Measure this constant, and state its value in a scenario of your own.",
         ),
         text(
-            "To find the row of your site, ask for the peak ground velocity of your design earthquake, or read it from a \
-             ShakeMap of a past earthquake. The Roman numeral is the intensity that corresponds to the velocity on average \
-             in California (Wald et al. 1999); elsewhere it is an assumption.",
+            "To find the row of your site, use the peak ground velocity of your design earthquake, or read it from a \
+             ShakeMap of a past earthquake. The Roman numeral is the intensity that corresponds to the velocity on \
+             average in California (Wald et al. 1999); elsewhere, this relation is an assumption.",
         ),
         Block::Figure(chart(all)),
         heading(in_planes(all, "Both directions", "In all directions")),
@@ -458,9 +458,8 @@ fn static_margins(all: &Heights) -> Table {
     Table::of(
         format!(
             "Static margin: the largest steady horizontal acceleration that a stack withstands, and the equivalent \
-             tilt of the floor, with the friction and the seats of the catalog{}. In shaking with pulses that last as \
-             long as the stack takes to tip over, an acceleration slightly above the margin makes the stack \
-             collapse.",
+             tilt of the floor, with the friction and the seats of the catalog{}. If the shaking has pulses that last \
+             as long as a stack takes to tip over, an acceleration slightly above the margin makes the stack collapse.",
             in_planes(
                 all,
                 "",
@@ -587,7 +586,7 @@ fn median_table(all: &Heights) -> Table {
     };
     let g = 1.0 / barrelstack_motion::STANDARD_GRAVITY;
     Table::of(
-        "Fragility by height and direction: lognormal curves of maximum likelihood.",
+        "Fragility by height and direction: lognormal curves fitted by maximum likelihood.",
         all.heights.iter().map(|height| (height, &height.by_velocity, &height.by_acceleration)),
         &[
             ("levels", "", &|(height, ..)| Cell::text(height.levels.to_string())),
@@ -620,8 +619,8 @@ fn rests_on(all: &Heights) -> Vec<String> {
         format!(
             "All barrels are full and of the type `{}` of the catalog. Friction, stiffness and damping of the seats \
              are drawn for every run around the values of the catalog, with the default dispersions of a scenario. \
-             Values and dispersions are assumptions; they are different for wet floors and painted racks. Measure \
-             those of your own floor and racks.",
+             Values and dispersions are assumptions; they are different for wet floors and painted racks. Measure the \
+             values for your own floor and racks.",
             all.request.barrel
         ),
         format!(
@@ -629,11 +628,11 @@ fn rests_on(all: &Heights) -> Vec<String> {
              barrel or a rack.",
             in_planes(all, "a plane model", "a three-dimensional model")
         ),
-        "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. \
+        "Scaled motions differ from the motions of stronger earthquakes, which last longer and have longer periods. \
          Results at levels far from the original strength of a motion are the least certain."
             .into(),
-        "In the ranges, every motion counts as one observation. The ranges apply to motions like these and do not \
-         cover errors of the model."
+        "In the computation of the ranges, every motion counts as one observation. The ranges apply to motions like \
+         these and do not cover errors of the model."
             .into(),
         "The racks are those of the catalog; several of their dimensions are assumptions. The folder holds the studies of this \
          page, which you can change and run for racks and rooms of your own."

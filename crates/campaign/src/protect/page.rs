@@ -306,11 +306,11 @@ fn legend(all: &Ranking) -> String {
          two means. The next column gives an interval that holds for all {} protections at once. This interval decides \
          whether a protection helps significantly, since the best of many protections tends to look better than it is. \
          All intervals allow for the small number of motions. Numbers are for the direction of shaking in which more \
-         barrels fall. With a probability of 95 %, the range over the uncertain constants contains the frequency of \
-         collapse of a stack whose friction, stiffness and damping are drawn from their distributions; it includes the \
-         sampling error. Each draw of the constants applies to all protections; a protection is better in a draw if \
-         fewer barrels fall with it. The draws do not change the number of barrels that fall in a collapse: at each \
-         level of shaking, it is the mean over the collapses.",
+         barrels fall. If the friction, stiffness and damping of a stack are drawn from their distributions, its \
+         frequency of collapse lies within the range over the uncertain constants with a probability of 95 %. The \
+         range includes the sampling error. Each draw of the constants applies to all protections; a protection is \
+         better in a draw if fewer barrels fall with it. The draws do not change the number of barrels that fall in a \
+         collapse: at each level of shaking, it is the mean over the collapses.",
         if all.request.records.is_empty() && all.request.folder.is_none() {
             "motions and friction"
         } else {

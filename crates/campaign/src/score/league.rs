@@ -320,9 +320,9 @@ fn legend(scenario: &Scenario) -> String {
     };
     format!(
         "A score compares racks and devices under the same motions; it does not predict the behavior of a particular \
-         cellar. The confidence interval (95 %, clustered by motion) is that of the weakest state and direction; \
-         there is none where no curve can be fitted. With a probability of 95 %, the range over the uncertain \
-         constants contains the score of a stack whose friction, stiffness and damping are drawn from their \
-         distributions; it includes the sampling error. Each draw of the constants applies to all rows.{space}"
+         cellar. The confidence interval (95 %, clustered by motion) is that of the weakest state and direction; there \
+         is none where no curve can be fitted. If the friction, stiffness and damping of a stack are drawn from their \
+         distributions, its score lies within the range over the uncertain constants with a probability of 95 %. The \
+         range includes the sampling error. Each draw of the constants applies to all rows.{space}"
     )
 }

@@ -27,11 +27,11 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             Block::Figure(scale_of(sheet)),
             Block::Table(table(sheet)),
             text(
-                "The velocity at which one stack in ten collapses is read from the lognormal curve of maximum \
-                 likelihood for all runs, with its 95 % interval (clustered by motion) in brackets. The score is the \
-                 smallest of these velocities, rounded down. With a probability of 95 %, the range over the uncertain \
-                 constants contains the velocity of a stack whose friction, stiffness and damping are drawn from their \
-                 distributions; it includes the sampling error.",
+                "The velocity at which one stack in ten collapses is read from the lognormal curve fitted to all runs \
+                 by maximum likelihood, with its 95 % interval (clustered by motion) in brackets. The score is the \
+                 smallest of these velocities, rounded down. If the friction, stiffness and damping of a stack are \
+                 drawn from their distributions, the velocity for this stack lies within the range over the uncertain \
+                 constants with a probability of 95 %. The range includes the sampling error.",
             ),
             Block::Figure(chart(sheet)),
             heading("The protocol"),
@@ -161,7 +161,7 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
     let new: Vec<String> =
         new.map(|row| format!("{} {}", bears(row.capacity), row.direction.words())).collect();
     said.push(format!(
-        "In new condition, the velocity at which one stack in ten collapses is {}.",
+        "For stacks in new condition, the velocity at which one stack in ten collapses is {}.",
         new.join(", ")
     ));
     said
@@ -257,8 +257,8 @@ fn chart(sheet: &Sheet) -> Figure {
     });
     Figure::new(
         "rockscore",
-        "Chance of collapse against peak ground velocity. Lines are fitted curves; where the runs determine no curve, dots \
-         show the shares with their 95 % intervals.",
+        "Chance of collapse against peak ground velocity. Lines are fitted curves; where no curve can be fitted to the \
+         runs, dots show the shares with their 95 % intervals.",
         Plot {
             x: Axis::new("peak ground velocity", "cm/s"),
             y: chance_axis("chance of collapse"),
@@ -290,7 +290,8 @@ pub(super) fn rules(sheet: &Sheet) -> Vec<String> {
     };
     let mut rules = vec![
         format!(
-            "The stack: {} levels on the rack that is scored, with its barrels, interfaces and devices, on level ground, {}.",
+            "The stack: {} levels on the rack that is scored, with its barrels, interfaces and devices. The stack \
+             stands on level ground and is shaken {}.",
             protocol.levels,
             if sheet.rows.iter().any(|row| row.direction == Direction::Space) {
                 "in three dimensions; the horizontal direction of the motion is drawn for every run"
@@ -308,8 +309,8 @@ pub(super) fn rules(sheet: &Sheet) -> Vec<String> {
             protocol.synthetic,
             list(&protocol.velocities, 100.0)
         ),
-        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, \
-         with the dispersions of the scenario; all racks get the same quantiles and the same motions."
+        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, with \
+         the dispersions of the scenario; the same quantiles and the same motions are used for all racks."
             .into(),
         "States: as good as new; wet cradles, with a friction coefficient of 0.2 between barrels and racks; and each \
          device in worn condition, one at a time."

@@ -228,8 +228,8 @@ fn discrete(reader: &Reader<'_>, domain: Domain) -> Result<Vec<(f64, Setting)>, 
     let total: f64 = weights.iter().sum();
     if weights.len() != settings.len() || total <= 0.0 {
         let message = format!(
-            "there are {} values and {} weights, whose sum is {total}; give each value a weight, at least one of \
-             them above 0",
+            "there are {} values, and {} weights with a sum of {total}; give one weight per value, at least one weight \
+             above 0",
             settings.len(),
             weights.len()
         );

@@ -237,8 +237,8 @@ fn possible(study: &Study, opened: &Opened) -> Result<(), StudyError> {
         && matches!(study.design, Design::Saltelli { .. } | Design::OneAtATime { .. })
     {
         return Err(refused(format!(
-            "the design \"{}\" changes factors separately, so that they cannot be correlated: remove [[correlation]], \
-             or use a sampled design such as \"sobol\"",
+            "the design \"{}\" changes factors separately, so the factors cannot be correlated: remove \
+             [[correlation]], or use a sampled design such as \"sobol\"",
             study.design.name()
         )));
     }
@@ -310,8 +310,8 @@ fn of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), Scenar
     for motion in motions {
         if !names.insert(&motion.name) {
             let message = format!(
-                "two motions have the name \"{}\"; give each a name of its own, as `name` of its [[motion]] or as the \
-                 name of its file",
+                "two motions have the name \"{}\"; give each motion its own name: state `name` in its [[motion]], or \
+                 rename its file",
                 motion.name
             );
             return Err(top.inconsistent("motion", message));
@@ -366,8 +366,8 @@ fn read_correlation(
         };
         if !drawn {
             return refused(format!(
-                "the factor \"{name}\" has no continuous distribution, so that it cannot be correlated with others: \
-                 give it one, or remove its name here"
+                "the factor \"{name}\" has no continuous distribution, so it cannot be correlated with other factors: \
+                 give it such a distribution, or remove its name here"
             ));
         }
         if names[..at].contains(name) || others.iter().any(|other| other.contains(name)) {
@@ -398,7 +398,8 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
     if let Some(Variation::Distribution(distribution)) = &variation
         && distribution.quantile(LOW).number() <= 0.0
     {
-        let message = "levels must be above zero, but the distribution has values that are not; truncate it with `least`";
+        let message = "levels must be above zero, but the distribution includes zero or negative values; truncate it \
+             with `least`";
         return Err(reader.inconsistent("distribution", message.to_owned()));
     }
     reader.finish();

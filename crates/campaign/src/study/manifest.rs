@@ -77,8 +77,8 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
             .is_some_and(|n| n < LAYOUT.into())
         {
             return Err(refuse(format!(
-                "was written by version {} in layout {} of study folders, but this version reads layout {LAYOUT}; use that \
-                 version, or name another folder",
+                "was written by version {} in layout {} of study folders, but this version reads layout {LAYOUT}; use \
+                 the version that wrote it, or name another folder",
                 text("version").trim_matches('"'),
                 text("schema")
             )));
@@ -99,8 +99,8 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     })?;
     if known.schema != LAYOUT {
         return Err(refuse(format!(
-            "was written by version {} in layout {} of study folders, but this version reads layout {LAYOUT}; use that \
-             version, or name another folder",
+            "was written by version {} in layout {} of study folders, but this version reads layout {LAYOUT}; use the \
+             version that wrote it, or name another folder",
             known.version, known.schema
         )));
     }

@@ -285,7 +285,7 @@ fn read_column(
         }
         _ => {
             return Err(ParquetError::General(
-                "the kind of a column differs from that in the schema".to_owned(),
+                "the type of a column differs from its type in the schema".to_owned(),
             ));
         }
     }

@@ -54,7 +54,7 @@ impl StudyTable {
             );
             if !fits {
                 return Err(StudyError::Table(format!(
-                    "the column `{name}` holds values of another kind"
+                    "the values of the column `{name}` do not have the stated type"
                 )));
             }
         }

@@ -82,8 +82,8 @@ fn change(change: &Change, scale: f64) -> Cell {
 pub fn table(found: &CellarComparison) -> Table {
     Table::of(
         "Loss against capacity; the layouts are sorted by the share of barrels that fall. Means over the variants, \
-         with their 95 % intervals; differences from the first layout are taken variant by variant. Wine and cost are \
-         expected losses under the central assumption on how many of the fallen barrels burst.",
+         with their 95 % intervals; differences from the first layout are computed variant by variant. Wine and cost \
+         are expected losses under the central assumption about how many of the fallen barrels burst.",
         rows(found),
         &[
             ("layout", "", &Row::name),

@@ -63,7 +63,7 @@ pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
     }
     let same = strengths.windows(2).find(|two| two[0] == two[1]);
     if let Some(twice) = same.and_then(<[f64]>::first) {
-        bail!("--scale: {twice} is given twice; leave one of them out");
+        bail!("--scale: {twice} is given twice; give it once");
     }
     let scenario =
         ScenarioArgs { scenario: args.scenario.clone(), set: args.set.clone(), record: None };

@@ -176,8 +176,8 @@ fn run_part(args: &RunArgs, cellar: &Cellar, part: Part, keep: &Path) -> anyhow:
     )])?;
     if failed > 0 {
         printer::warning(&format!(
-            "{failed} of the {of} variants failed, and their results are not kept: the command that combines the \
-             parts runs these variants again, and does not count those that fail again"
+            "{failed} of the {of} variants failed, and their results are not kept: the command that combines the parts \
+             runs these variants again, and omits a variant that fails again"
         ));
     }
     Ok(ExitCode::SUCCESS)
@@ -199,7 +199,8 @@ pub(super) fn selected(cellar: Cellar, args: VariantArgs) -> anyhow::Result<(Cel
     let cellar = cellar.with_variants(count);
     match args.variant {
         Some(number) if number > count => bail!(
-            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the room as stated; --variants {number} runs {number} variants"
+            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the room as stated; add --variants \
+             {number} to run {number} variants"
         ),
         Some(number) => Ok((cellar, RunChoice::Number(number))),
         None => Ok((cellar, RunChoice::Typical)),

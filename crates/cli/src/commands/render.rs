@@ -91,7 +91,7 @@ impl RenderArgs {
         let (from, to) = (self.from.unwrap_or(0.0), self.to.unwrap_or(f64::INFINITY));
         if !(from >= 0.0 && to > from) {
             bail!(
-                "--from {from} --to {to}: expected two times (s), the first not negative and the second later"
+                "--from {from} --to {to}: expected a start time of 0 s or more and a later end time"
             );
         }
         Ok((self.from.is_some() || self.to.is_some()).then_some([from, to]))

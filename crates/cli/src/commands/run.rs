@@ -131,7 +131,8 @@ pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Re
     };
     match args.variant {
         Some(number) if number > count => bail!(
-            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the stack as stated; --variants {number} runs {number} variants"
+            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the stack as stated; add --variants \
+             {number} to run {number} variants"
         ),
         Some(number) => Ok(RunChoice::Number(number)),
         None => Ok(RunChoice::Typical),

@@ -281,7 +281,7 @@ fn warn_of_damaged(shards: usize, out: &Path) {
         return;
     }
     printer::warning(&format!(
-        "{} found in {}: renamed with the extension .damaged, and computed again",
+        "{} found in {}: the files are renamed with the extension .damaged, and their chunks run again",
         printer::counted(shards as u64, "damaged shard"),
         out.join("shards").display()
     ));

@@ -56,8 +56,8 @@ pub enum PolygonError {
     },
     /// A corner turns inward, or three successive corners are in line.
     #[error(
-        "corner {corner} at ({x:.6} m, {z:.6} m) does not turn left: give the corners of a convex \
-         polygon counterclockwise, without three successive corners in line"
+        "the outline does not turn left at corner {corner}, ({x:.6} m, {z:.6} m): list the corners of a convex polygon \
+         counterclockwise, without three successive corners on a line"
     )]
     NotConvex {
         /// Number of the corner, counted from 1.
@@ -69,8 +69,8 @@ pub enum PolygonError {
     },
     /// The corners go around the polygon more than once.
     #[error(
-        "the corners go around the polygon more than once: up to corner {corner}, they turn by more than 360°; \
-         list each corner of a convex polygon once"
+        "the outline goes around the polygon more than once: up to corner {corner}, it turns by more than 360°; list \
+         each corner of a convex polygon once"
     )]
     Overlapping {
         /// Number of the corner, counted from 1, at which the first full turn is complete.

@@ -27,9 +27,9 @@ pub struct Barrel<R = f64> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "a barrel {length} m long cannot have a head radius of {head_radius} m, a bilge radius of {bilge_radius} m and a \
-     chime radius of {rounding} m: all lengths must be positive, the bilge must be wider than the heads, the radius of \
-     the longitudinal arc of the staves must be at least the bilge radius, and the chime radius must be smaller than \
-     half the length and than the head radius"
+     chime radius of {rounding} m: all lengths must be positive, the bilge must be wider than the heads, the staves \
+     must curve lengthwise with a radius of at least the bilge radius, and the chime radius must be smaller than the \
+     head radius and smaller than half the length"
 )]
 pub struct BarrelError {
     length: f64,

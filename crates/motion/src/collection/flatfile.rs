@@ -63,7 +63,7 @@ impl Flatfile {
         let Some((_, head)) = lines.next() else {
             return Err(MotionError::parameter(
                 file,
-                "a table with column names on the first line",
+                "a table with column names in the first line",
                 "nothing",
             ));
         };

@@ -116,19 +116,19 @@ pub fn noise_corners(
     let split = samples(arrival, dt).min(a.len());
     if arrival < SHORTEST_NOISE {
         return Err(refuse(format!(
-            "{arrival:.2} s of noise before the shaking; at least {SHORTEST_NOISE} s are needed"
+            "the record has {arrival:.2} s of noise before the shaking; at least {SHORTEST_NOISE} s are needed"
         )));
     }
     let shaking = (a.len() - split) as f64 * dt;
     if shaking < SHORTEST_SHAKING {
         return Err(refuse(format!(
-            "{shaking:.2} s of shaking after the arrival; at least {SHORTEST_SHAKING} s are needed"
+            "the record has {shaking:.2} s of shaking after the arrival; at least {SHORTEST_SHAKING} s are needed"
         )));
     }
     let first = a[0];
     if a[..split].iter().all(|value| *value == first) {
         return Err(refuse(format!(
-            "the noise of {arrival:.2} s before the shaking is below the resolution of the file"
+            "in the {arrival:.2} s before the shaking, the noise is below the resolution of the file"
         )));
     }
     let spectra = Spectra::of(dt, &a[..split], &a[split..], criterion.bandwidth);

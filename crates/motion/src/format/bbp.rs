@@ -116,7 +116,7 @@ fn missing_unit(source: &Source<'_>, values: &[f64]) -> ReadError {
     source.error(
         (),
         Refusal::Missing(Given::Unit),
-        "a unit of acceleration (this Broadband Platform text states none)",
+        "a unit of acceleration (files of the Broadband Platform state none)",
         format!("numbers up to {:.4} without a unit", math::peak(values)),
         "state the unit of accelerations, mostly cm/s2, or that velocities in cm/s are to be \
          differentiated",

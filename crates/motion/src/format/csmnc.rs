@@ -123,7 +123,7 @@ fn check_duration(
     }
     Err(source.damaged(
         line,
-        format!("{count} points of {time_step} s, {length:.3} s in all"),
+        format!("a duration of {length:.3} s ({count} points at a step of {time_step} s)"),
         format!("a duration of {} s", stated.value),
         "the header contradicts itself; get the file again from its source",
     ))

@@ -76,7 +76,7 @@ pub(super) fn take_out(source: &Source<'_>, record: &mut Record) -> Result<(), R
         if mean.abs() > limit {
             return Err(source.damaged(
                 (),
-                format!("accelerations around 0 in channel {name}"),
+                format!("accelerations with a mean near 0 in channel {name}"),
                 format!("a mean of {mean:.4} m/s2"),
                 "check the unit; if the mean is gravity or an offset of the sensor, subtract it from the values",
             ));

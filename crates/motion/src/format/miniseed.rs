@@ -87,7 +87,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     if at != bytes.len() {
         return Err(damaged(
             source,
-            &format!("a whole number of data records, the last ending at byte {at}"),
+            &format!("a whole number of data records, the last of which ends at byte {at}"),
             format!("{} bytes in all", bytes.len()),
         ));
     }
@@ -244,7 +244,7 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
     if samples > 0 && (data < FIXED_HEADER || data >= length || rate <= 0.0) {
         return Err(damaged(
             source,
-            "data inside its record and a sample rate above 0",
+            "data that begin inside the data record, and a sampling rate above 0",
             format!("data at byte {data} of {length}, {rate} Hz"),
         ));
     }
@@ -297,7 +297,7 @@ fn joined(
             let what = if off > 0.0 { "gap" } else { "overlap" };
             return Err(source.damaged(
                 (),
-                format!("channel {channel} without gaps and overlaps"),
+                format!("channel {channel} without gaps or overlaps"),
                 format!(
                     "{what}s of {:.4} s in total up to {}: {} samples at {rate} Hz last \
                      {counted:.4} s, \

@@ -105,7 +105,7 @@ impl Format {
             return Err(source.error(
                 (),
                 Refusal::Options,
-                "one sensitivity for each channel in the given metadata",
+                "metadata with one sensitivity for each channel",
                 found,
                 "give only the StationXML valid at the time of the record",
             ));

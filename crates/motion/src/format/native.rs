@@ -158,7 +158,7 @@ fn places(
         count => Err(source.damaged(
             last,
             format!(
-                "one line \"# recorded:\" for all, or one line for each of the {channels} channels"
+                "one line \"# recorded:\" for all channels, or one line for each of the {channels} channels"
             ),
             format!("{count} such lines"),
             "correct the header lines",

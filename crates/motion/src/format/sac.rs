@@ -99,7 +99,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     if matches!(dependent, 6 | 7) && hints.recorded().is_none() {
         return Err(source.not_acceleration(
             (),
-            "acceleration as dependent variable",
+            "acceleration as the dependent variable",
             if dependent == 6 { "displacement" } else { "velocity" },
             "give the acceleration file of the same channel",
         ));

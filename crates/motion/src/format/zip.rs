@@ -82,7 +82,10 @@ impl ZipEntry<'_> {
             return Err(format!("{} with more than {} MB", self.name, limit >> 20));
         }
         if crc32fast::hash(&bytes) != self.sum {
-            return Err(format!("{} whose checksum differs from the stated one", self.name));
+            return Err(format!(
+                "{} whose checksum differs from the checksum in the archive",
+                self.name
+            ));
         }
         Ok(bytes)
     }

@@ -145,7 +145,7 @@ class Calibration(Page):
             When only one of mass and stiffness is given.
         """
         if (mass is None) != (stiffness is None):
-            raise ValueError("damping needs mass and stiffness: give both or neither")
+            raise ValueError("damping needs both `mass` and `stiffness`: give both of them, or leave both out")
         striker = None if mass is None else (plain(mass), plain(stiffness))
         return cls(_native.calibrate_drop(*_text(measured), striker, nodes, interface))
 

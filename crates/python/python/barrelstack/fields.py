@@ -308,9 +308,9 @@ class FreeInterfaceFields(TypedDict, total=False):
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
-    """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: for constants
-    per seat, the mass that the catalog gives for the seats of the rack; for other constants, there is no
-    default, and the mass is required if `restitution` is given.
+    """Mass on one seat or node (kg), or per meter of boundary (kg/m), for which the restitution holds. Default:
+    for constants per seat, the mass that the catalog gives for the seats of the rack; for other constants,
+    there is no default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
     """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: the restitution
@@ -345,7 +345,9 @@ class FrictionFields(TypedDict, total=False):
     """
     law: Union[Literal["coulomb"], Literal["regularized"], Literal["none"]]
     static_coefficient: Union[float, Quantity]
-    """Static coefficient of friction, not below the kinetic one. Default: the kinetic coefficient."""
+    """Static coefficient of friction, at least as large as the kinetic coefficient. Default: the kinetic
+    coefficient.
+    """
     tangential_damping_ratio: Union[float, Quantity]
     """Ratio of the damping of the tangential spring to the normal damping. Default: 1.0."""
     tangential_stiffness_ratio: Union[float, Quantity]
@@ -393,9 +395,9 @@ class ImpactFields(TypedDict, total=False):
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
-    """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: for constants
-    per seat, the mass that the catalog gives for the seats of the rack; for other constants, there is no
-    default, and the mass is required if `restitution` is given.
+    """Mass on one seat or node (kg), or per meter of boundary (kg/m), for which the restitution holds. Default:
+    for constants per seat, the mass that the catalog gives for the seats of the rack; for other constants,
+    there is no default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
     """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: the restitution
@@ -479,9 +481,9 @@ class InterfaceFields(TypedDict, total=False):
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
-    """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: for constants
-    per seat, the mass that the catalog gives for the seats of the rack; for other constants, there is no
-    default, and the mass is required if `restitution` is given.
+    """Mass on one seat or node (kg), or per meter of boundary (kg/m), for which the restitution holds. Default:
+    for constants per seat, the mass that the catalog gives for the seats of the rack; for other constants,
+    there is no default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
     """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: the restitution
@@ -836,8 +838,8 @@ class RackFields(TypedDict, total=False):
     rail_width: Quantity
     """Width of one rail, along the axis of the barrel. Default: the value in the catalog."""
     seat_stroke: Quantity
-    """Penetration at a seat beyond which the impact law of the two bodies acts in addition. Default: the value in
-    the catalog.
+    """Penetration at a seat beyond which the impact law of the two bodies also acts. Default: the value in the
+    catalog.
     """
     width: Quantity
     """Overall width of the rack, across the barrels. Default: the value in the catalog."""
@@ -896,7 +898,7 @@ class RunFields(TypedDict, total=False):
     """Criterion that ends the run. "rest" ends the run when the ground is still and all bodies are at rest; after
     a collapse, it is enough that the ground acceleration stays below 0.02 g. "verdict" ends the run 2 s after
     the first loss of a seat; a run without such a loss ends when all bodies are at rest and the ground
-    acceleration stays below 0.02 g. "duration" ends the run when `duration` is over. With "rest",
+    acceleration stays below 0.02 g. "duration" ends the run after `duration`. If `until` is "rest",
     `imperfections.until` determines when the runs of the variants end. Default: "rest" for a stack, "duration"
     for a free scene.
     """
@@ -1222,8 +1224,8 @@ class UnknownsFields(TypedDict, total=False):
 
     damping: Union[float, Quantity]
     """Standard deviation of ln c, or of the logarithm of the damping ratio if a restitution is stated; one value
-    is drawn for all seats with a damper. The default is an assumption: with 0.3, a stated restitution of 0.8
-    becomes a restitution between 0.69 and 0.88 in nineteen of twenty variants. Default: 0.3.
+    is drawn for all seats with a damper. The default is an assumption: with 0.3 and a stated restitution of
+    0.8, the restitution is between 0.69 and 0.88 in nineteen of twenty variants. Default: 0.3.
     """
     drawn: bool
     """True to draw the constants at random; false to keep them as stated in all variants. Default: true."""

@@ -44,7 +44,7 @@ pub fn read_shock(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
     let pulse = reader.optional_section("pulse")?.map(read_pulse).transpose()?;
     let none = reader.optional_flag("none")?;
     if none == Some(false) {
-        let message = format!("`{}` is either true or left out", reader.path_of("none"));
+        let message = format!("`{}` must be true or left out", reader.path_of("none"));
         return Err(reader.inconsistent("none", message));
     }
     let source = if let Some(source) = record.or(bundled) {

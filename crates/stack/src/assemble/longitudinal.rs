@@ -43,8 +43,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
         })?;
     if rack.rail_half_spacing + 0.5 * rack.rail_width >= profile.half_length {
         return Err(AssembleError::Stack(format!(
-            "the rails at ± {} m lie beyond the ends of a barrel {} m long: make \
-             rack.rail_half_spacing smaller",
+            "the rails at ± {} m lie beyond the ends of a barrel {} m long: set a smaller stack.rack.rail_half_spacing",
             rack.rail_half_spacing, barrel.length
         )));
     }
@@ -247,8 +246,8 @@ impl Seating {
         let up = profile.stave_radius - profile.bilge_radius;
         if up * sin.abs() >= across {
             return Err(AssembleError::Stack(format!(
-                "a barrel inclined by {:.1}° leans on the outer corners of its rails: make stack.rack.incline smaller, at \
-                 most {:.1}° for this barrel, or stack.rack.rail_half_spacing larger",
+                "a barrel inclined by {:.1}° leans on the outer corners of its rails: reduce stack.rack.incline to at \
+                 most {:.1}°, or increase stack.rack.rail_half_spacing",
                 rack.incline.to_degrees(),
                 math::asin((across / up).min(1.0)).to_degrees()
             )));

@@ -114,8 +114,8 @@ fn add_rack(
         let inside = |horn: &&Solid| horn.offset.x.abs() > 0.5 * rack.width;
         if let Some(horn) = horns.iter().find(inside) {
             return Err(AssembleError::Stack(format!(
-                "chocks at {:.3} m lie beyond the rack, which reaches {:.3} m to either side: make \
-                 stack.chock.angle or stack.chock.gap smaller",
+                "chocks at ± {:.3} m lie beyond the rack, which extends to ± {:.3} m: set a smaller stack.chock.angle \
+                 or stack.chock.gap",
                 horn.offset.x.abs(),
                 0.5 * rack.width
             )));

@@ -105,7 +105,8 @@ section! {
 pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError> {
     let straps = Straps::read_fields(&reader)?;
     if straps.slack > 0.0 && straps.pretension > 0.0 {
-        let message = "a strap with pretension has no slack; leave one of the two out".to_owned();
+        let message =
+            "a strap with pretension has no slack; leave `pretension` or `slack` out".to_owned();
         return Err(reader.inconsistent("pretension", message));
     }
     if let Some(strength) = straps.strength.filter(|strength| *strength <= straps.pretension) {
@@ -146,8 +147,8 @@ impl Straps {
         let give = (slack - pretension / stiffness) * scale.length;
         if distance + give <= 0.0 {
             return Err(format!(
-                "the pretension of {pretension} N stretches a strap of {stiffness} N/m by {:.3} m, but the strap \
-                 {} is only {:.3} m long: take a stiffer strap, or less pretension",
+                "the pretension of {pretension} N stretches a strap with a stiffness of {stiffness} N/m by {:.3} m, \
+                 but the strap {} is only {:.3} m long: take a stiffer strap, or less pretension",
                 pretension / stiffness,
                 link.name,
                 distance / scale.length

@@ -36,9 +36,9 @@ pub enum RunFailure {
     Duration(String),
     /// The results would take more memory than allowed.
     #[error(
-        "{samples:.2e} samples of {channels} histories and {frames:.2e} frames of {bodies} bodies take \
-         {gigabytes:.1} GB, more than a run may keep ({} GB): lower record.history_rate or \
-         record.frame_rate, or shorten run.duration",
+        "{samples:.2e} samples of {channels} histories and {frames:.2e} frames of {bodies} bodies take {gigabytes:.1} \
+         GB, but a run may store at most {} GB: lower record.history_rate or record.frame_rate, or shorten \
+         run.duration",
         MOST_KEPT / 1e9
     )]
     Memory {

@@ -363,7 +363,7 @@ fn check(reader: &Reader<'_>, barrel: &Barrel) -> Result<(), ScenarioError> {
     }
     if barrel.fill == Fill::Empty && barrel.mass != barrel.empty_mass {
         let message = format!(
-            "`{}` is {} kg but an empty barrel weighs its `empty_mass` of {} kg; give only `empty_mass`",
+            "`{}` is {} kg, but the mass of an empty barrel is its `empty_mass`, {} kg; give only `empty_mass`",
             path("mass"),
             barrel.mass,
             barrel.empty_mass

@@ -137,7 +137,10 @@ fn check_law(reader: &Reader<'_>, law: ElementLaw) -> Result<(), ScenarioError> 
                 Some(_) => ("gap", "`stop_stiffness`, without which its stops hold nothing"),
                 None => ("stop_stiffness", "`gap`, without which there are no stops"),
             };
-            let message = format!("a guide with stops also needs {lacks}; give both or neither");
+            let message = format!(
+                "a guide with stops also needs {lacks}; state both `gap` and `stop_stiffness`, or \
+                 leave both out"
+            );
             Err(reader.inconsistent(given, message))
         }
         ElementLaw::Strap { yields_at: Some(yields_at), strength: Some(strength), .. }

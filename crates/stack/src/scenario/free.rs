@@ -324,7 +324,7 @@ fn read_interfaces(
         }
         if interfaces.iter().any(|known| known.between == between) {
             let message = format!(
-                "a second interface between \"{}\" and \"{}\"; keep one",
+                "there are two interfaces between \"{}\" and \"{}\"; keep one of them",
                 between[0], between[1]
             );
             return Err(reader.inconsistent("between", message));
@@ -333,8 +333,8 @@ fn read_interfaces(
             && of_kind(bodies, &between[1]).all(|(_, shape, _)| shape.is_none())
         {
             let message = format!(
-                "no body of the kind \"{}\" has a shape that nodes could touch; in `between`, give the kind with the \
-                 nodes first",
+                "no body of the kind \"{}\" has a shape that contact nodes can touch; in `between`, name the kind with \
+                 the nodes first",
                 between[1]
             );
             return Err(reader.inconsistent("between", message));

@@ -437,8 +437,7 @@ pub(super) fn extend(
                 };
                 if tables.len() + 1 >= CHAIN_LIMIT {
                     let message = format!(
-                        "more than {CHAIN_LIMIT} scenarios extend one another; does one extend \
-                         itself?"
+                        "more than {CHAIN_LIMIT} scenarios extend one another; check whether one of them extends itself"
                     );
                     return Err(problem(Problem::Inconsistent { message }));
                 }

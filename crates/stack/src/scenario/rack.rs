@@ -136,7 +136,7 @@ known! {
     /// two rails. Constants stated per node apply to every contact element; constants stated per seat are divided among
     /// the contact elements of the seat.
     contact: SeatContact = Kind::Choice(names::<SeatContact>), CATALOG;
-    /// Penetration at a seat beyond which the impact law of the two bodies acts in addition.
+    /// Penetration at a seat beyond which the impact law of the two bodies also acts.
     seat_stroke: f64 = size(1e-4, 1.0), CATALOG;
     /// Distance between contact nodes on flat undersides.
     node_spacing: f64 = size(1e-3, 0.5), CATALOG;

@@ -110,7 +110,7 @@ fn put(
     match inner.get(&entry.key).map(|known| layer(known.origin)) {
         Some(known) if known == layer(entry.origin) => {
             let message = format!(
-                "`{section}.{}` is stated, too, and replaces this key; leave one of them out",
+                "`{section}.{}`, which replaces this key, is stated too; leave one of the two out",
                 entry.key
             );
             Err(sources.error(entry.origin, Problem::Inconsistent { message }))

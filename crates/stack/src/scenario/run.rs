@@ -87,7 +87,7 @@ section! {
     /// Criterion that ends the run. "rest" ends the run when the ground is still and all bodies are at rest; after a
     /// collapse, it is enough that the ground acceleration stays below 0.02 g. "verdict" ends the run 2 s after the
     /// first loss of a seat; a run without such a loss ends when all bodies are at rest and the ground acceleration
-    /// stays below 0.02 g. "duration" ends the run when `duration` is over. With "rest", `imperfections.until`
+    /// stays below 0.02 g. "duration" ends the run after `duration`. If `until` is "rest", `imperfections.until`
     /// determines when the runs of the variants end.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");

@@ -117,7 +117,7 @@ fn read_interfaces(
         };
         if interfaces.iter().any(same) {
             let message = format!(
-                "a second interface between \"{}\" and \"{}\"; keep one",
+                "there are two interfaces between \"{}\" and \"{}\"; keep one of them",
                 between[0], between[1]
             );
             return Err(reader.inconsistent("between", message));

@@ -44,8 +44,8 @@ section! {
     /// Standard deviation of ln k of impacts; one value is drawn for all impacts. The default is an assumption.
     impact_stiffness: f64 = DISPERSION, Default::Value("0.1");
     /// Standard deviation of ln c, or of the logarithm of the damping ratio if a restitution is stated; one value is
-    /// drawn for all seats with a damper. The default is an assumption: with 0.3, a stated restitution of 0.8 becomes a
-    /// restitution between 0.69 and 0.88 in nineteen of twenty variants.
+    /// drawn for all seats with a damper. The default is an assumption: with 0.3 and a stated restitution of 0.8, the
+    /// restitution is between 0.69 and 0.88 in nineteen of twenty variants.
     damping: f64 = DISPERSION, Default::Value("0.3");
     /// Largest excess of the static over the kinetic friction coefficient of barrels on racks, as a fraction of the
     /// kinetic coefficient. An additional excess, uniformly distributed between 0 and this value, is drawn once for all

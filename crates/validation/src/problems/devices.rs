@@ -285,7 +285,9 @@ fn between_stops() -> Problem {
             let step = if effort == Effort::Full { 1e-5 } else { 5e-5 };
             match run_crossings(&mut scene, step, 1.0, |state| state.poses[1].position.x)?[..] {
                 [_, back, ..] => Ok(back),
-                _ => Err(Failure::Absent("the contact forces do not return to the weight".into())),
+                _ => Err(Failure::Absent(
+                    "the weight does not return to the middle of the stops".into(),
+                )),
             }
         })
 }

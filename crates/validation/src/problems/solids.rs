@@ -212,7 +212,9 @@ fn flat(share: f64, count: f64) -> Problem {
         let (other, swapped) = forces_on(pose, true)?;
         let apart = one.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         if apart > 1e-9 * one[1].abs() || contacts != swapped {
-            return Err(Failure::Absent(format!("swapping the boxes changes forces by {apart} N")));
+            return Err(Failure::Absent(format!(
+                "swapping the boxes changes the forces by {apart} N"
+            )));
         }
         Ok(Outcome::of(contacts as f64).noted(format!("{:.0} N", one[1])))
     })

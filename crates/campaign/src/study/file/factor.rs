@@ -107,7 +107,10 @@ pub(super) fn read_factor(
             own_motion,
         )?;
         if domain.get_or_insert(of) != &of {
-            let message = format!("`{path}` does not take the same kind of value as `{field}`");
+            let message = format!(
+                "`{path}` and `{field}` need different kinds of values, so one factor cannot set \
+                 both"
+            );
             return Err(reader.inconsistent("also", message));
         }
     }
@@ -162,7 +165,10 @@ fn domain_of(
     }
     if matches!(path, "motion.record" | "motion.vertical_record") {
         // The contents of these files are part of the fingerprint of the study only where [[motion]] lists them.
-        let message = format!("`{path}` names a file; list the `records` of [[motion]]");
+        let message = format!(
+            "`{path}` names a file, which a factor cannot vary; list the files as `records` of \
+             [[motion]]"
+        );
         return Err(reader.inconsistent(key, message));
     }
     if matches!(path, "title" | "schema" | "extends") || path.starts_with("record.") {

@@ -171,7 +171,8 @@ impl Input {
             let (channel, number) = text.split_once('=').unwrap_or(("", text));
             let value = number.trim().parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
             let sensitivity = value.ok_or_else(|| {
-                anyhow!("--sensitivity {text}: expected a number above 0, or a channel with its number, such as HNE=427819")
+                anyhow!("--sensitivity {text}: expected a number above 0, or a channel and its sensitivity, such as \
+                     HNE=427819")
             })?;
             if channel.is_empty() {
                 options.sensitivity = Some(sensitivity);
@@ -402,7 +403,7 @@ fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     }
     if found.is_empty() {
         bail!(
-            "{}: no file in this folder is StationXML with a sensitivity (files that end in .xml: {})",
+            "{}: no file in this folder is a StationXML file with a sensitivity (number of .xml files: {})",
             path.display(),
             files.len()
         );
@@ -464,7 +465,7 @@ pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
     file.take(LIMIT + 1).read_to_end(&mut bytes).map_err(plain).with_context(refused)?;
     if bytes.len() as u64 > LIMIT {
         bail!(
-            "{}: it exceeds 256 MB, which no strong-motion file does; correct the path",
+            "{}: it is larger than 256 MB, the limit for strong-motion files; correct the path",
             refused()
         );
     }

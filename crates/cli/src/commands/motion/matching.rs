@@ -122,7 +122,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
         None => Ok(ExitCode::SUCCESS),
         Some(words) => {
             printer::warning(&format!(
-                "the target is missed {words}, which is accepted as requested; the exit status is {NEAR}"
+                "the target is missed {words}; --accept-misfit accepts this misfit, and the exit status is {NEAR}"
             ));
             Ok(ExitCode::from(NEAR))
         }

@@ -190,7 +190,8 @@ impl ProcessArgs {
         let chain = self.chain(read.stage)?;
         if chain.is_none() && self.corners.is_none() && self.rotate.is_none() {
             bail!(
-                "this chain has no steps: add one, such as --high-pass \"0.1 Hz\", or use convert"
+                "no processing step is given: add one, such as --high-pass \"0.1 Hz\", or use `barrelstack motion \
+                 convert`"
             );
         }
         let after = match self.corners {

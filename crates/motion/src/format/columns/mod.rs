@@ -46,7 +46,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         Commas::Separate => read_table(source, first, end, hints),
         Commas::Both => Err(source.damaged(
             first,
-            "decimal points, or a separator other than a comma",
+            "decimal points, or a column separator other than a comma",
             quoted(&source.text(first)),
             "write the numbers with decimal points, or with semicolons between them",
         )),

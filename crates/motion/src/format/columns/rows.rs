@@ -181,7 +181,7 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
         return source.error(
             first,
             Refusal::Unrecognized,
-            "rows of the same width, or a count and a step above them",
+            "rows with equally many numbers, or a first line with the number of samples and the time step",
             format!("{width} numbers in the first row and {found} in the next"),
             "the first row does not belong to the table and has an unknown meaning; remove it and state \
              step and unit",

@@ -94,7 +94,8 @@ pub(super) fn unit_of(
         };
         return Err(source.damaged(
             first,
-            "a time column with steps of a strong-motion record, in seconds or in a stated unit",
+            "a time column in seconds or in a stated unit, with a time step that is plausible for a strong-motion \
+             record",
             found,
             remedy,
         ));
@@ -126,7 +127,7 @@ pub(super) fn one(
         if !shape::rise_alike(&table[kept], &table[*at], units.map(|(other, own)| own / other)) {
             return Err(source.damaged(
                 line,
-                "one column of times, or several that agree",
+                "one time column, or several time columns that agree with each other",
                 format!("{} and {}, which disagree", names[kept].shown(), names[*at].shown()),
                 "remove the column that does not belong to the accelerations",
             ));

@@ -113,7 +113,7 @@ const LINEAR: &[Field] = &[
             "for constants per seat, the mass that the catalog gives for the seats of the rack; for other constants, \
              there is no default, and the mass is required if `restitution` is given",
         ),
-        "Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary.",
+        "Mass on one seat or node (kg), or per meter of boundary (kg/m), for which the restitution holds.",
     ),
 ];
 
@@ -244,7 +244,7 @@ table! {
     by law {
         /// Elastic and damped tangential spring (stick) up to the static limit, then sliding.
         "coulomb" with [COEFFICIENT_FIELD] {
-            /// Static coefficient of friction, not below the kinetic one.
+            /// Static coefficient of friction, at least as large as the kinetic coefficient.
             static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("the kinetic coefficient");
             /// Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, the
             /// friction force reverses over a smaller displacement, but the time step must be smaller.

@@ -91,7 +91,7 @@ pub enum Friction {
     Coulomb {
         /// Kinetic coefficient.
         coefficient: f64,
-        /// Static coefficient, not below the kinetic one.
+        /// Static coefficient, at least as large as the kinetic coefficient.
         static_coefficient: f64,
         /// Ratio of the tangential to the normal stiffness.
         tangential_stiffness_ratio: f64,

@@ -71,7 +71,7 @@ pub(super) fn sources(given: &[String], out: &Path) -> anyhow::Result<Vec<Source
         if pair[0].record.name == pair[1].record.name {
             let [one, two] = [&pair[0], &pair[1]].map(|s| s.root.display().to_string());
             bail!(
-                "{} is in both {one} and {two}: give each folder in a command of its own",
+                "{} is in both {one} and {two}: run the command separately for each folder",
                 pair[0].record.name
             );
         }

@@ -130,7 +130,7 @@ impl Set<'_> {
             100.0 * selection.median_error(target),
             if spread {
                 format!(
-                    "standard deviation of ln Sa within {:.1} %",
+                    "standard deviation of ln Sa within {:.1} % of the target",
                     100.0 * selection.deviation_error(target)
                 )
             } else {
