@@ -80,19 +80,19 @@ fn files_that_are_no_text() {
     refuse("blank", b"\n  \n# nothing\n", &["empty"]);
     refuse("picture", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", &["byte 0", "UTF-8"]);
     refuse("UTF-16", &utf16("schema = 1\n"), &["byte 0", "UTF-8"]);
-    refuse("zeros", &[0; 64], &[":1:", "not TOML"]);
+    refuse("zeros", &[0; 64], &[":1:", "not valid TOML"]);
     refuse(
         "large",
         &vec![b'#'; 2 << 20],
         &["2097152 bytes", "if it is a motion record, name it in"],
     );
-    refuse("a record", b"PEER STRONG MOTION\n .1 .2 -.3\n", &[":1:", "not TOML"]);
+    refuse("a record", b"PEER STRONG MOTION\n .1 .2 -.3\n", &[":1:", "not valid TOML"]);
 }
 
 #[test]
 fn files_that_are_cut_or_repeat_themselves() {
-    refuse("cut", b"schema = 1\ntitle = \"half", &[":2:", "not TOML"]);
-    refuse("cut table", b"schema = 1\n[stack", &[":2:", "not TOML"]);
+    refuse("cut", b"schema = 1\ntitle = \"half", &[":2:", "not valid TOML"]);
+    refuse("cut table", b"schema = 1\n[stack", &[":2:", "not valid TOML"]);
     refuse("twice", &stack("[stack]\nlevels = 3\nlevels = 4"), &[":5:", "levels"]);
     refuse("no schema", b"title = \"a\"\n", &["schema"]);
     refuse("future", b"schema = 99\nextends = \"demo-napa\"\n", &[":1:", "schema", "99"]);
