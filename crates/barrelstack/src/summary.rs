@@ -207,10 +207,11 @@ described! {
         pub ground_work: f64 as "J" = balance.ground_work,
         /// Energy that the other terms of the balance do not account for; it is the error of the computation.
         pub residual: f64 as "J" = balance.residual,
-        /// Energy supplied: absolute value of the work of the ground, plus the decrease of
-        /// potential energy.
+        /// Energy exchanged: the work of the ground and of external forces, added up without its sign, plus the energy
+        /// available at the start, which is the kinetic energy, the energy of springs, and the potential energy above
+        /// its lowest value in the run.
         pub input: f64 as "J" = balance.throughput,
-        /// Absolute value of the residual divided by the energy supplied.
+        /// Absolute value of the residual divided by the energy exchanged (`input`).
         pub residual_ratio: f64 as "1" = balance.residual_ratio(),
     }
 

@@ -97,7 +97,7 @@ pub(crate) fn rows(
         row(
             "energy balance",
             format!(
-                "residual {:.1e} of the {} supplied",
+                "residual {:.1e} of the {} exchanged",
                 energy.residual_ratio,
                 joules(energy.input)
             ),

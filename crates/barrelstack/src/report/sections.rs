@@ -359,16 +359,29 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     Figure::new(format!("stress-{name}"), caption, picture)
 }
 
+/// States which part of a rack the model contains, if it is a slice along the barrels; empty if racks are whole.
+fn slice(run: &Run) -> String {
+    let barrels = run.scenario.stack().map_or(1, |stack| stack.rack.barrels);
+    if run.assembly.view != Some(View::Longitudinal) || barrels == 1 {
+        return String::new();
+    }
+    format!(
+        " This plane is a slice one barrel wide: where a rack carries {barrels} barrels side by side, the forces are those \
+         of one of them, with its share of the racks."
+    )
+}
+
 fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
     if summary.interfaces.is_empty() {
         return Vec::new();
     }
-    let table = interface_table(
+    let caption = format!(
         "Force on the upper body, or on the body named first if neither rests on the other; positive up and to the right. \
          Two forces are given: the one of largest magnitude until the first loss of seat, and the one of largest \
-         magnitude over the whole run, falls included.",
-        &summary.interfaces,
+         magnitude over the whole run, falls included.{}",
+        slice(run)
     );
+    let table = interface_table(&caption, &summary.interfaces);
     let recording = &run.recording;
     let mut blocks = Vec::new();
     if let Some(base) = recording.joints.first() {
@@ -409,11 +422,12 @@ fn motion(run: &Run) -> Vec<Block> {
     blocks
 }
 
-/// States the residual of the energy balance of a run, and the energy supplied.
+/// States the residual of the energy balance of a run, and the energy exchanged.
 pub fn balanced(balance: &EnergyBalance) -> String {
     format!(
         "The energy supplied by the ground and by gravity equals the energy stored and dissipated, except for a residual of {} \
-         times the {} kJ supplied.",
+         times the {} kJ exchanged. The energy exchanged is the work of the ground, added up without its sign, and the \
+         energy available at the start.",
         significant(balance.residual_ratio, 2),
         significant(1e-3 * balance.input, 3)
     )

@@ -322,7 +322,7 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
     pair("contact constants", constants.to_owned());
     let residual = |balance: &EnergyBalance| {
         format!(
-            "residual {} of the {} kJ supplied",
+            "residual {} of the {} kJ exchanged",
             significant(balance.residual_ratio, 2),
             significant(1e-3 * balance.input, 3)
         )

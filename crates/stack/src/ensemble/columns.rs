@@ -213,7 +213,7 @@ columns! {
     end_time "s": Run Number |case| case.end_time;
     /// number of accepted time steps
     steps "": Run Integer |case| case.steps.and_then(|steps| usize::try_from(steps).ok());
-    /// error of the energy balance divided by the energy supplied
+    /// error of the energy balance divided by the energy exchanged
     energy_residual_ratio "": Run Number |case| case.energy_residual_ratio;
     /// number of warnings
     warnings "": Run Integer |case| Some(case.warnings.len());

@@ -190,7 +190,7 @@ fn pounding() -> Vec<Problem> {
             // measured 1.4e-10
             (
                 "pounding-balance",
-                "residual of the energy balance, divided by the energy supplied",
+                "residual of the energy balance, divided by the energy exchanged",
                 "",
                 absolute(0.0, 1e-5),
                 |run| Some(run.energy?.residual_ratio()),
