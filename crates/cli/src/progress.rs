@@ -27,7 +27,7 @@ const SHARE: f64 = 0.02;
 /// number is smaller.
 const ENOUGH: f64 = 24.0;
 
-/// Shortest total time for which an estimate is printed.
+/// Shortest total time for which an estimate is printed early.
 const LONG: Duration = Duration::from_secs(10);
 
 /// Progress display and cancellation.
@@ -224,9 +224,9 @@ pub(crate) struct Lines {
 struct LastLine {
     /// Time of the last line.
     last: Instant,
-    /// `true` if no estimate of the total time will be printed, because it was printed before or the total time is
-    /// unknown.
-    whole: bool,
+    /// `true` if no early estimate of the remaining time will be printed, because one was printed before or the work is
+    /// one of several parts.
+    estimated: bool,
     /// Time at which this work, or this part of it, started; the amount that was finished at that time; and the value
     /// of `Work::now()` at that time. The finished amount comes from an earlier run, so it is excluded from the
     /// estimate. `None` before the first report.
@@ -240,15 +240,16 @@ struct LastLine {
 impl Lines {
     /// Starts the display. Lines are printed only if `show` is `true` and the output is not a terminal.
     pub(crate) fn new(show: bool) -> Self {
-        let line = LastLine { last: Instant::now(), whole: false, start: None, done: 0.0, of: 0.0 };
+        let line =
+            LastLine { last: Instant::now(), estimated: false, start: None, done: 0.0, of: 0.0 };
         let wanted = show && !std::io::stderr().is_terminal();
         Self { last: wanted.then(|| Mutex::new(line)) }
     }
 
-    /// Marks the work as one of several parts. The total time is then unknown, and no estimate of it is printed.
+    /// Marks the work as one of several parts. The total time is then unknown, and no early estimate is printed.
     fn part(&self) {
         if let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) {
-            line.whole = true;
+            line.estimated = true;
         }
     }
 
@@ -283,15 +284,12 @@ impl Lines {
             }
             return;
         };
-        if !line.whole && spent + to_go > LONG {
-            line.whole = true;
-            printer::note(&format!("this takes about {}", rounded(spent + to_go)));
-        } else if line.last.elapsed() > EVERY {
+        let first_estimate = !line.estimated && spent + to_go > LONG;
+        if first_estimate || line.last.elapsed() > EVERY {
+            line.estimated |= first_estimate;
             printer::note(&format!("{}, about {} to go", words(), rounded(to_go)));
-        } else {
-            return;
+            line.last = Instant::now();
         }
-        line.last = Instant::now();
     }
 }
 
