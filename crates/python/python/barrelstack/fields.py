@@ -269,8 +269,8 @@ class ElementFields(TypedDict, total=False):
     yields_at: Quantity
     """Force at which the strap yields and becomes permanently longer; if not given, the strap never yields."""
     sway_damping: Quantity
-    """Damping force on the second attachment point divided by the velocity of that point, both perpendicular to the
-    rod. Default: 0 N s/m.
+    """Damping force on the second attachment point divided by the velocity of that point, both perpendicular to
+    the rod. Default: 0 N s/m.
     """
     axis: Quantity
     """Inclination of the axis in the first body, counterclockwise. Default: 0 deg."""
@@ -639,9 +639,10 @@ class NodesFields(TypedDict, total=False):
     list: list["NodeFields"]
     """Nodes at chosen points."""
     rule: Literal["corners", "rolling", "exact"]
-    """Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. With exact
-    contact, the contact point of every corner and arc of the convex outline is the point that lies deepest in the other
-    body. If both bodies have exact contact, the corners and arcs of both are tested for contact.
+    """Rule for the nodes: nodes at the corners, one node at the deepest point of a circle, or exact contact. With
+    exact contact, the contact point of every corner and arc of the convex outline is the point that lies
+    deepest in the other body. If both bodies have exact contact, the corners and arcs of both are tested for
+    contact.
     """
     spacing: Quantity
     """Largest distance between nodes along the boundary."""
@@ -800,10 +801,10 @@ class RackFields(TypedDict, total=False):
     barrels: int
     """Number of barrels side by side on one rack, across the barrels. Default: the value in the catalog."""
     barrels_deep: int
-    """Number of barrels end to end on one rack, along the barrels. Default: the value in the catalog."""
+    """Number of barrels on one rack that lie head to head. Default: the value in the catalog."""
     base: Union[Literal["two-barrel"], Literal["two-barrel-feet"], Literal["single-bar"], Literal["four-barrel"], Literal["rack-on-rack"], Literal["two-barrel-inclined"], Literal["candia-2008"]]
     beam_height: Quantity
-    """Height of the beams of the rack, without its feet. Default: the value in the catalog."""
+    """Height of the beams of the rack; the feet are not included. Default: the value in the catalog."""
     clearance: Quantity
     """Height of the lowest point of a carried barrel above the underside of the rack. Default: the value in the
     catalog.
@@ -912,9 +913,9 @@ class ScaleFields(TypedDict, total=False):
     factor: Union[float, Quantity]
     """Factor; a negative factor reverses the motion. Default: 1 unless another field scales the motion."""
     measure: str
-    """Name of any other intensity measure that increases with the amplitude of the motion. The motion is scaled so that this measure
-    reaches `value`. Examples: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`,
-    `sa(1.0)` (period in seconds, damping 5 %) and `sa(1.0,0.02)`.
+    """Name of any other intensity measure that increases with the amplitude of the motion. The motion is scaled so
+    that this measure reaches `value`. Examples: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`,
+    `vsi`, `fiv3(1.0)`, `sa(1.0)` (period in seconds, damping 5 %) and `sa(1.0,0.02)`.
     """
     of: Literal["component", "rotd50", "rotd100", "geomean"]
     """Components from which `measure` is computed: the component that drives the stack, or both horizontal
