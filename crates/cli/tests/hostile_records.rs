@@ -136,7 +136,7 @@ fn columns_that_leave_something_out() {
         "a.csv",
         b"0.00 0.1\n0.01\n0.02 -0.3\n",
         unit,
-        &["line 1", "rows of the same width"],
+        &["line 1", "rows with equally many numbers"],
     );
     refuse_with("text", "a.csv", b"0.00 0.1\n0.01 high\n0.02 -0.3\n", unit, &["line 2", "high"]);
     let still = b"0.00 0.0\n0.01 0.0\n0.02 0.0\n0.03 0.0\n";

@@ -60,7 +60,7 @@ fn render_refuses_what_it_cannot_mean() {
         ("--rate=0", &["--rate", "above zero"]),
         ("--size=9", &["--size", "64"]),
         ("--format=bmp", &["--format", "svg, png, pdf"]),
-        ("--to=-1", &["--to -1", "two times"]),
+        ("--to=-1", &["--to -1", "a later end time"]),
     ] {
         let output = barrelstack(BLOCK.into_iter().chain([option, "--out", out.to_str().unwrap()]));
         refused(option, &output, &out, words);
