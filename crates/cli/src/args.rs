@@ -55,7 +55,7 @@ pub(crate) enum Command {
     Score(crate::commands::score::ScoreArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
-    /// Shake a cellar with its motion, then with an aftershock: do the stacks that still stand survive?
+    /// Shake a cellar with its motion, then with an aftershock: do the standing stacks survive?
     Aftershock(crate::commands::aftershock::AftershockArgs),
     /// Run two or more scenarios and compare them on one page.
     Compare(crate::commands::compare::CompareArgs),
