@@ -46,7 +46,7 @@ struct Row {
     what: String,
     figure: Figure,
     target: f64,
-    /// Cheapest peer, with its time (s) for the same work.
+    /// Fastest peer, with its time (s) for the same work.
     peer: Option<(String, f64)>,
     /// Time (s) of the plain loop for the same work.
     plain: Option<f64>,

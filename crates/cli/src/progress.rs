@@ -23,8 +23,8 @@ const LOOKED_AT: Duration = Duration::from_secs(1);
 /// share is required.
 const SHARE: f64 = 0.02;
 
-/// Number of runs that must be finished before the time of the other runs is predicted, or half of all runs if that
-/// number is smaller.
+/// Number of runs that must be finished before the time of the remaining runs is predicted. If half of all runs are
+/// fewer than this number, half of all runs are enough.
 const ENOUGH: f64 = 24.0;
 
 /// Shortest total time for which an estimate is printed early.

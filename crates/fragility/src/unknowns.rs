@@ -469,7 +469,7 @@ impl Conditional {
     }
 
     /// Returns the credible interval of a difference: the share with one constant at the second deviate, minus the
-    /// share with that constant at the first deviate. All other constants are unknown.
+    /// share with that constant at the first deviate. All other constants are drawn from their distributions.
     pub fn difference(&self, unknown: usize, deviates: [f64; 2], level: f64) -> Interval {
         let [from, to] = deviates.map(|deviate| self.shares_at(unknown, deviate));
         let mut differences: Vec<f64> = to.iter().zip(&from).map(|(b, a)| b - a).collect();
