@@ -173,8 +173,8 @@ def test_a_force_beside_friction_stops_a_block_on_half_the_way() -> None:
         (("block", 1.0), ValueError, "two components, x and z; the number of values found is 1"),
         (("block", (1.0, 0.0, 0.0)), ValueError, "two components, x and z; the number of values found is 3"),
         (("block", (float("nan"), 0.0)), ValueError, "not finite"),
-        (("block", (1.0, 0.0), (0.0,)), ValueError, "a point has two components"),
-        (("block", (1.0, 0.0), None, (1.0, 2.0)), ValueError, "a moment has one component"),
+        (("block", (1.0, 0.0), (0.0,)), ValueError, "a point must have two components"),
+        (("block", (1.0, 0.0), None, (1.0, 2.0)), ValueError, "a moment must have one component"),
         (("block", "much"), ValueError, "could not convert"),
     ],
 )
