@@ -409,6 +409,22 @@ fn a_title_of_the_users_own_stays_and_what_is_changed_follows() {
         mine(&["interface.barrel-rack.friction.coefficient=0.2"]).title,
         "My stack, changed"
     );
+    // A title that begins as a generated one, but names another motion, is the user's; one that only lacks a scale is not.
+    let like = |motion: &str, changes: &[&str]| {
+        let text = format!(
+            "schema = 1\nextends = \"demo-napa\"\ntitle = \"Ten barrels on five levels, {motion}\"\n[motion.scale]\npga = \"0.5 g\""
+        );
+        parsed(&text, changes).title
+    };
+    let change = ["stack.levels=3"];
+    assert_eq!(
+        like("El Centro 1940", &change),
+        "Ten barrels on five levels, El Centro 1940: six barrels on three levels"
+    );
+    assert_eq!(
+        like("South Napa 2014", &change),
+        "Six barrels on three levels, South Napa 2014-08-24 M6.0, at 0.50 g"
+    );
     // Further changes do not repeat words, and neither do changes to the resolved text.
     let set =
         |scenario: &Scenario, change: &str| scenario.with(&[change.to_owned()]).unwrap().title;

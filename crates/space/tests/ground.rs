@@ -41,13 +41,13 @@ fn close(found: Vec3, way: [f64; 2]) -> bool {
 fn components_point_where_their_azimuths_say() {
     // Across the barrels east: away is north. Across them north: away is west.
     let (east, _) = peak("E", "0 deg", ["E", "N"]);
-    let (north, told) = peak("N", "0 deg", ["E", "N"]);
-    println!("{east:?} {north:?} {told:?}");
+    let (north, warnings) = peak("N", "0 deg", ["E", "N"]);
+    println!("{east:?} {north:?} {warnings:?}");
     let scale = east.x;
     assert!(scale > 0.1);
     assert!(close(east, [scale, 0.5 * scale]), "{east:?}");
     assert!(close(north, [0.5 * scale, -scale]), "{north:?}");
-    assert!(!told.iter().any(|told| told.contains("perpendicular")), "{told:?}");
+    assert!(!warnings.iter().any(|one| one.contains("perpendicular")), "{warnings:?}");
 }
 
 #[test]
@@ -62,9 +62,12 @@ fn a_stack_that_is_turned_against_the_clock_sees_the_ground_turn_with_it() {
 
 #[test]
 fn components_of_unknown_directions_are_said_to_be_taken() {
-    let (found, told) = peak("H1", "0 deg", ["H1", "H2"]);
+    let (found, warnings) = peak("H1", "0 deg", ["H1", "H2"]);
     assert!(close(found, [found.x, 0.5 * found.x]), "{found:?}");
-    assert!(told.iter().any(|told| told.contains("does not state the directions")), "{told:?}");
+    assert!(
+        warnings.iter().any(|one| one.contains("does not state the directions")),
+        "{warnings:?}"
+    );
 }
 
 /// Runs a three-dimensional stack of one level under a motion, with further changes, and returns the result.

@@ -39,15 +39,16 @@ impl Own {
             return Some(Self { title: title.to_owned(), stated: None });
         };
         let words = (stands(stack), shakes(stated, None));
-        // A generated title may name the event of a record, which is not known without its file; the words for all
-        // other motions are known.
+        // A generated title may name the event of a record, which is not known without its file. The names of all other
+        // motions are known; the date of an event or a scale may follow them.
+        let name = words.1.split(", ").next().unwrap_or(&words.1);
         let of_a_file = matches!(
             &stated.motion.source,
             MotionSource::Record(record) if matches!(record.source, RecordSource::File(_))
         );
         if title.strip_prefix(&words.0).is_some_and(|rest| {
             rest.is_empty()
-                || rest.strip_prefix(", ").is_some_and(|rest| of_a_file || rest == words.1)
+                || rest.strip_prefix(", ").is_some_and(|rest| of_a_file || rest.starts_with(name))
         }) {
             return None;
         }
