@@ -25,7 +25,7 @@ const USAGE: &str = "\
 usage: cargo xtask TASK
 
 tasks:
-  test       formatting, lints, documentation, and all tests; stops at the first failure
+  test       formatting, lints, documentation, and all tests, also after a failed test
   golden     saves pictures of all report pages as references for the tests; look at them before you commit
   golden bits  saves hashes of results as references for the tests, after their version is raised
   film       records the animation of the demo for the README, in three dimensions

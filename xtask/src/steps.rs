@@ -1,4 +1,7 @@
-//! The steps of `cargo xtask test`, run in order up to the first failure.
+//! The steps of `cargo xtask test`, run in order.
+//!
+//! A failed check of the sources ends the run, since it is quickly mended. After failed tests, the other tests are still
+//! run, so that one run reports all failures.
 
 use std::ffi::OsString;
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -74,59 +77,111 @@ const STEPS: [Step; 5] = [
 const MIRI: [&[&str]; 1] = [&["--package", "barrelstack-dynamics", "--lib", "lanes::"]];
 
 /// Runs all steps and prints the numbers of tests that passed, failed and were skipped on the last line.
+///
+/// # Errors
+///
+/// Returns the first failed check of the sources, or else a list of all steps that failed.
 pub(crate) fn test() -> anyhow::Result<()> {
     let root = root();
     let start = Instant::now();
-    let mut total = Tally::default();
+    let mut report = Report::default();
     let extras = extra::all(&root);
     let count = STEPS.len() + extras.len();
-    let mut closing = Vec::new();
     for (index, step) in STEPS.iter().enumerate() {
         let name = format!("cargo {}", step.arguments.join(" "));
-        let heading = format!("step {} of {count}: {name}", index + 1);
-        println!("\n== {heading}");
+        println!("\n== step {} of {count}: {name}", index + 1);
         let mut command = Command::new(cargo());
         command.args(step.arguments).current_dir(&root);
         if step.strict_docs {
             command.env("RUSTDOCFLAGS", "-D warnings");
         }
-        let begin = Instant::now();
-        let (passed, tally) = watched(&mut command).with_context(|| format!("{heading} failed"))?;
-        total.add(tally);
-        let counted = (tally != Tally::default()).then(|| format!(": {tally}"));
-        closing.push(format!("{name}{}{}", counted.unwrap_or_default(), after(begin)));
-        if !passed {
-            close(&closing, total, start);
-            bail!("{heading} failed: {}", step.remedy);
+        let passed = report.run(&name, &mut command, step.remedy);
+        if !passed && step.arguments[0] != "test" {
+            break;
         }
     }
-    for (index, extra) in extras.into_iter().enumerate() {
-        let heading = format!("step {} of {count}: {}", STEPS.len() + index + 1, extra.name);
-        println!("\n== {heading}");
-        let mut command = match extra.command {
-            Ok(command) => command,
-            Err(reason) => {
-                println!("skipped: {reason}");
-                total.skipped += 1;
-                closing.push(format!("{}: skipped, {reason}", extra.name));
-                continue;
+    if report.failures.is_empty() || report.total != Tally::default() {
+        for (index, extra) in extras.into_iter().enumerate() {
+            println!("\n== step {} of {count}: {}", STEPS.len() + index + 1, extra.name);
+            match extra.command {
+                Ok(mut command) => {
+                    if let Some(Err(error)) = extra.pages.map(|pages| pages.build()) {
+                        report.failures.push(format!("{}: {error:#}", extra.name));
+                        continue;
+                    }
+                    report.run(extra.name, command.current_dir(&root), extra.remedy);
+                }
+                Err(reason) => {
+                    println!("skipped: {reason}");
+                    report.total.skipped += 1;
+                    report.closing.push(format!("{}: skipped, {reason}", extra.name));
+                }
+            }
+        }
+    }
+    report.close(start);
+    if report.failures.is_empty() {
+        return Ok(());
+    }
+    bail!("{} failed:\n  {}", steps_of(report.failures.len()), report.failures.join("\n  "))
+}
+
+/// Returns a number with the noun, such as "2 steps".
+fn steps_of(count: usize) -> String {
+    format!("{count} step{}", if count == 1 { "" } else { "s" })
+}
+
+/// Results of the steps that were run.
+#[derive(Default)]
+struct Report {
+    /// Numbers of tests in all steps.
+    total: Tally,
+    /// A line for each step, with its counts and its time.
+    closing: Vec<String>,
+    /// The name of each failed step, and advice.
+    failures: Vec<String>,
+}
+
+impl Report {
+    /// Runs the command of a step and keeps its result. Returns `true` if the step passed.
+    fn run(&mut self, name: &str, command: &mut Command, remedy: &str) -> bool {
+        let begin = Instant::now();
+        let passed = match watched(command) {
+            Ok((passed, tally)) => {
+                self.total.add(tally);
+                let counts =
+                    if tally == Tally::default() { String::new() } else { format!(": {tally}") };
+                let failed = if passed { "" } else { " (failed)" };
+                let seconds = begin.elapsed().as_secs_f64();
+                self.closing.push(format!("{name}{counts}, {seconds:.0} s{failed}"));
+                passed
+            }
+            Err(error) => {
+                println!("{error:#}");
+                self.closing.push(format!("{name}: not run, {error:#}"));
+                false
             }
         };
-        let begin = Instant::now();
-        if let Some(pages) = extra.pages {
-            pages.build()?;
-        }
-        let (passed, tally) =
-            watched(command.current_dir(&root)).with_context(|| format!("{heading} failed"))?;
-        total.add(tally);
-        closing.push(format!("{}: {tally}{}", extra.name, after(begin)));
         if !passed {
-            close(&closing, total, start);
-            bail!("{heading} failed: {}", extra.remedy);
+            println!("\n== failed: {name}; {remedy}");
+            self.failures.push(format!("{name}: {remedy}"));
         }
+        passed
     }
-    close(&closing, total, start);
-    Ok(())
+
+    /// Prints the counts and the time of each step, and the total counts on the last line.
+    ///
+    /// Prints nothing if no test was run, because `0 passed, 0 failed` would look like a success.
+    fn close(&self, start: Instant) {
+        if self.total == Tally::default() {
+            return;
+        }
+        println!("\n== closing lines, after {:.0} s", start.elapsed().as_secs_f64());
+        for line in &self.closing {
+            println!("{line}");
+        }
+        println!("{}", self.total);
+    }
 }
 
 /// Runs only the tests of the workspace, which need nothing but the Rust toolchain.
@@ -217,25 +272,6 @@ pub(crate) fn golden() -> anyhow::Result<ExitCode> {
     check.renew()
 }
 
-/// Formats the time since the start of a step, such as ", 83 s".
-fn after(begin: Instant) -> String {
-    format!(", {:.0} s", begin.elapsed().as_secs_f64())
-}
-
-/// Prints the counts and the time of each step, and the total counts on the last line.
-///
-/// Prints nothing if no test was run, because `0 passed, 0 failed` would look like a success.
-fn close(closing: &[String], total: Tally, start: Instant) {
-    if total == Tally::default() {
-        return;
-    }
-    println!("\n== closing lines, after {:.0} s", start.elapsed().as_secs_f64());
-    for line in closing {
-        println!("{line}");
-    }
-    println!("{total}");
-}
-
 /// Runs a command and prints its output as it arrives; returns `true` if the command succeeded, and
 /// the counts of the test runners in the output.
 fn watched(command: &mut Command) -> anyhow::Result<(bool, Tally)> {
@@ -302,8 +338,20 @@ mod tests {
     use std::fs;
     use std::path::PathBuf;
 
-    use super::root;
+    use super::{Command, Report, cargo, root};
     use crate::lines::{entries, sources};
+
+    /// A failed step must not hide the results of the steps after it, nor be forgotten.
+    #[test]
+    fn steps_after_a_failed_step_are_run() {
+        let mut report = Report::default();
+        assert!(!report.run("one", Command::new(cargo()).arg("--no-such-option"), "mend it"));
+        assert!(!report.run("two", &mut Command::new("no-such-program"), "install it"));
+        assert!(report.run("three", Command::new(cargo()).arg("--version"), "unused"));
+        assert_eq!(report.failures, ["one: mend it", "two: install it"]);
+        assert_eq!(report.closing.len(), 3);
+        assert!(report.closing[0].ends_with("(failed)") && !report.closing[2].contains("failed"));
+    }
 
     /// A test file must be declared as a module in `tests/main.rs`; otherwise its tests would not be run.
     #[test]
