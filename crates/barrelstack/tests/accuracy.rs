@@ -38,10 +38,9 @@ fn results(grounds: &[Arc<Ground>], setting: &str) -> Vec<CaseResult> {
             settings.push("stack.view=longitudinal".to_owned());
         }
         let scenario = Arc::new(Scenario::builtin(stack, &settings).unwrap());
-        grounds.iter().map(move |ground| Prepared {
-            scenario: Arc::clone(&scenario),
-            ground: Arc::clone(ground),
-        })
+        grounds
+            .iter()
+            .map(move |ground| Prepared::shaken_by(Arc::clone(&scenario), Arc::clone(ground)))
     });
     Ensemble { cases: cases.collect(), ..Ensemble::default() }.run()
 }

@@ -218,6 +218,36 @@ fn a_motion_too_long_to_run_is_told_whatever_shares_its_stack() {
 }
 
 #[test]
+fn a_case_without_stresses_differs_only_in_the_demands_that_need_them() {
+    let with: Vec<Prepared> = (0..12).map(random_case).collect();
+    let mut mixed = with.clone();
+    for case in mixed.iter_mut().step_by(2) {
+        case.records_stresses = false;
+    }
+    let mut recorded = 0;
+    for width in [Width::Scalar, Width::widest()] {
+        for (at, (with, mut mixed)) in
+            results(width, &with).into_iter().zip(results(width, &mixed)).enumerate()
+        {
+            for (own, other) in [
+                (&with.demands, &mut mixed.demands),
+                (&with.demands_whole_run, &mut mixed.demands_whole_run),
+            ] {
+                recorded += u32::from(own.stress_amplification.is_some());
+                if at.is_multiple_of(2) {
+                    assert_eq!(other.stress_amplification, None);
+                    assert_eq!(other.mean_stress_amplification, None);
+                    other.stress_amplification = own.stress_amplification;
+                    other.mean_stress_amplification = own.mean_stress_amplification;
+                }
+            }
+            assert_eq!(format!("{with:?}"), format!("{mixed:?}"), "case {at}");
+        }
+    }
+    assert!(recorded >= 40, "{recorded} of 48");
+}
+
+#[test]
 fn an_ensemble_stops_when_asked() {
     let cases: Vec<Prepared> = (0..12).map(random_case).collect();
     let asked = std::cell::Cell::new(0);

@@ -367,7 +367,7 @@ impl Cases<'_> {
     fn prepared(&self, row: usize) -> Result<Prepared, String> {
         let scenario = self.scenario(row).map_err(|error| error.sentence())?;
         let ground = self.grounds.of(&scenario).map_err(|error| error.to_string())?;
-        Ok(Prepared { scenario: Arc::new(scenario), ground })
+        Ok(Prepared::shaken_by(Arc::new(scenario), ground))
     }
 
     /// Returns a hash of the view, the number of levels and the number of columns of the stack. Cases whose hashes

@@ -175,10 +175,8 @@ impl Plane {
         let ground = |number| -> &Arc<Ground> {
             exchanged.as_ref().filter(|_| self.is_exchanged(number)).unwrap_or(&own)
         };
-        let case = |number| Prepared {
-            scenario: Arc::new(self.trial(number)),
-            ground: Arc::clone(ground(number)),
-        };
+        let case =
+            |number| Prepared::shaken_by(Arc::new(self.trial(number)), Arc::clone(ground(number)));
         Ok(numbers.iter().copied().map(case).collect())
     }
 }

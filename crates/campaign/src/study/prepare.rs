@@ -181,7 +181,10 @@ impl Study {
                 Ok(shaken) => {
                     shakings.push((case, Arc::as_ptr(&scenario), shaken.clone()));
                     let ground = Arc::clone(&shaken.ground);
-                    Built { shaken: Some(shaken), prepared: Ok(Prepared { scenario, ground }) }
+                    Built {
+                        shaken: Some(shaken),
+                        prepared: Ok(Prepared::shaken_by(scenario, ground)),
+                    }
                 }
                 Err(error) => Built { shaken: None, prepared: Err(error.to_string()) },
             });

@@ -125,9 +125,12 @@ impl<'a, R: Real> lanes::Batch<'a, Planar<R>> for Batch<'a, '_, R> {
         let rest = &standing.state;
         let mut fates = Fates::new(&standing.assembly, rest, thresholds(&run.case.scenario));
         fates.observe(state, scratch);
-        let (assembly, model) = (&standing.assembly, &standing.assembly.model);
-        let mut stresses = StressWatch::new(assembly, rest, &standing.scratch);
-        stresses.observe(true, state, scratch, &|_| Some(model));
+        let stresses = run.case.records_stresses.then(|| {
+            let (assembly, model) = (&standing.assembly, &standing.assembly.model);
+            let mut stresses = StressWatch::new(assembly, rest, &standing.scratch);
+            stresses.observe(true, state, scratch, &|_| Some(model));
+            stresses
+        });
         let mut joints = Joints::new(&standing.assembly);
         joints.start(state.time, scratch);
         let mut trail = Trail::new(&standing.assembly);
@@ -135,7 +138,9 @@ impl<'a, R: Real> lanes::Batch<'a, Planar<R>> for Batch<'a, '_, R> {
         self.due.put(lane, &trail.due());
         self.trails[lane] = trail;
         self.shares[lane] = Some(share);
-        self.stresses.begin(lane, stresses);
+        if let Some(stresses) = stresses {
+            self.stresses.begin(lane, stresses);
+        }
         self.joints.get_or_insert_with(|| Joints::in_all(&joints)).put(lane, &joints);
         self.fates.get_or_insert_with(|| Fates::in_all(&fates)).put(lane, &fates);
         self.end.get_or_insert_with(|| watch::End::in_all(&end)).put(lane, &end);

@@ -84,7 +84,7 @@ impl Grounds {
 ///     let change = format!("interface.block-ground.friction.coefficient={}", 0.1 * (number + 1) as f64);
 ///     let scenario = base.with(&[change]).map_err(|error| error.sentence())?;
 ///     let ground = grounds.of(&scenario).map_err(|error| error.to_string())?;
-///     Ok(Prepared { scenario: scenario.into(), ground })
+///     Ok(Prepared::shaken_by(scenario.into(), ground))
 /// };
 /// let table = rows(9, &|_| 0, &make, None, &|_| ControlFlow::Continue(()), &|| false);
 /// assert_eq!(table.map(|table| table[0].values.len()), Some(9));

@@ -32,7 +32,11 @@ pub(super) fn run(
         };
         let mut watch = Watch {
             fates: Fates::new(&standing.assembly, &state, thresholds(scenario)),
-            stresses: StressWatch::new(&standing.assembly, &state, &scratch),
+            stresses: if run.case.records_stresses {
+                StressWatch::new(&standing.assembly, &state, &scratch)
+            } else {
+                StressWatch::nothing()
+            },
             joints: Joints::new(&standing.assembly),
             trail: Trail::new(&standing.assembly),
             started: false,
