@@ -219,7 +219,7 @@ fn run_with_first_verdict(
         Some(headline_in_space(&spread))
     };
     let (mut cases, more) =
-        variants::in_order((&plane.numbers(), 1), &run, &first_headline, report)?;
+        variants::run_with_first_verdict((&plane.numbers(), 1), &run, &first_headline, report)?;
     cases.extend(more.into_iter().flatten());
     Ok(cases)
 }

@@ -247,25 +247,27 @@ const FIRST: u32 = 8;
 /// Function that runs the cases with the given numbers, and reports the number of finished cases.
 pub type RunCases<'a, R, E> = dyn Fn(&[u32], RunCounter<'_>) -> Result<R, E> + 'a;
 
-/// Runs the variants of the first verdict, reports that verdict, and then runs all other variants. Returns the results
-/// of both parts; `None` if there are no other variants.
+/// Runs the nominal case and the variants with the lowest numbers, reports their verdict, and then runs all other
+/// variants. Returns the results of both parts; `None` for the second part if all cases were run at once, because fewer
+/// variants would follow the first verdict than it has.
 ///
-/// The first verdict uses the variants with the lowest numbers. The variants that finish first
-/// would be a biased sample, because runs that collapse end early.
+/// The variants that finish first would be a biased sample for the first verdict, because runs that collapse end early.
 ///
-/// `run` runs every case in the given number of planes. `headline` states the verdict on the results of the first part;
-/// `None` if some of these are unfinished.
+/// `numbers` starts with the nominal case. `run` runs every case in the given number of planes. `headline` states the
+/// verdict on the results of the first part; `None` if some of these are unfinished.
 ///
 /// # Errors
 /// The errors of `run`.
-pub fn in_order<R, E>(
+pub fn run_with_first_verdict<R, E>(
     (numbers, planes): (&[u32], usize),
     run: &RunCases<'_, R, E>,
     headline: &dyn Fn(&R) -> Option<String>,
     report: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
 ) -> Result<(R, Option<R>), E> {
     let of = planes * numbers.len();
-    let (first, others) = numbers.split_at(numbers.len().min(FIRST as usize + 1));
+    let early = FIRST as usize;
+    let at = if numbers.len() > 2 * early { early + 1 } else { numbers.len() };
+    let (first, others) = numbers.split_at(at);
     let finished = AtomicUsize::new(0);
     let results = run(first, &|done| {
         finished.fetch_max(done, Ordering::Relaxed);
@@ -274,9 +276,7 @@ pub fn in_order<R, E>(
     if others.is_empty() {
         return Ok((results, None));
     }
-    if others.len() >= FIRST as usize
-        && let Some(headline) = headline(&results)
-    {
+    if let Some(headline) = headline(&results) {
         // A request to stop is handled by the next variant.
         let _ = report(Advance::First { variants: FIRST, headline });
     }
@@ -285,8 +285,8 @@ pub fn in_order<R, E>(
     Ok((results, Some(more)))
 }
 
-/// Runs all cases of each plane, with a first verdict as in [`in_order`]. If the computation is canceled, the unfinished
-/// cases have the outcome `Interrupted`.
+/// Runs all cases of each plane, with a first verdict as in [`run_with_first_verdict`]. If the computation is canceled,
+/// the unfinished cases have the outcome `Interrupted`.
 fn run_planes(
     planes: &[Plane],
     numbers: &[u32],
@@ -307,7 +307,8 @@ fn run_planes(
             spreads.iter().map(|(view, spread)| (*view, spread)).collect();
         Some(words::headline(&of_views))
     };
-    let (mut results, more) = in_order((numbers, planes.len()), &run, &first_headline, report)?;
+    let (mut results, more) =
+        run_with_first_verdict((numbers, planes.len()), &run, &first_headline, report)?;
     for (results, more) in results.iter_mut().zip(more.into_iter().flatten()) {
         results.extend(more);
     }

@@ -38,7 +38,9 @@ use crate::outcome::Outcome;
 use crate::scenario::{MotionSource, MotionSpec, Scenario, Scene, Until, View};
 use crate::watch::after_collapse;
 
-pub use answer::{Advance, Answer, RunCases, RunChoice, Shown, answer, answer_of, in_order};
+pub use answer::{
+    Advance, Answer, RunCases, RunChoice, Shown, answer, answer_of, run_with_first_verdict,
+};
 pub(crate) use answer::{common_number, run_together};
 pub use decides::{Constant, Fitted, ShareAt, Unknown};
 pub use remedy::{
