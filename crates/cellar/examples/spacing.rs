@@ -132,8 +132,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if let Some(last) = last {
         println!(
-            "The runs of a room end after {END} s. The stack alone is followed until nothing moves; in the variants in \
-             which it falls, it loses its first seat after {last:.1} s at the latest.\n"
+            "The runs of a room end after {END} s. The stack alone is simulated until nothing moves. In all variants in \
+             which it falls, it loses its first seat within the first {last:.1} s.\n"
         );
     }
     match free {
