@@ -61,7 +61,7 @@ coefficients poorly, so the ranges of their results mainly show the uncertainty 
 
 **Likelihoods.** Let p(h, u, a, φ) be the probability that a stack of height h falls with unknowns u, motion a and \
 azimuth φ. Let w(h) be the proportion of the stacks that have the height h; all mixtures of heights are equally \
-likely. Let d(h) be the share of the barrels that fall with a stack of height h. Then
+likely. If a stack of height h falls, d(h) is the mean share of its barrels that fall. Then
 
 ```text
 S = Σ w(h) p(h, u, a, φ) d(h)                       share of barrels; without d(h), share of stacks
@@ -91,15 +91,17 @@ pub(super) fn page(observations: &Statements, cases: &[FieldCases], results: &Re
          The factor on the motion is the same for both statements on Napa Barrel Care."
     );
     text.push_str(
-        "\n## What the model predicts\n\nTwo columns are untuned. “Catalog medians” is the probability of a fall with \
-         the medians of the catalog, under the unscaled record. “Prior” is the mean of this probability over the \
-         prior, with the central 90 % interval over the unknowns and over the uncertainty of the fit.\nThe column \
-         “given half” is tuned: its mean and its interval are over the posterior given the statement “half” (half of \
-         the barrels are on the floor).\nAt Napa College, prior and posterior include the factor on the motion; at the \
-         other stations this factor is 1.\n“Fall over the design” gives how many of the simulated stacks fall. The \
-         simulations cover the whole range of the unknowns, which is wider than the prior, so this count must not be \
-         compared with the share that fell in a cellar.\nThe table [shares by height](field/shares.csv) also states \
-         the mean fitted probability of these cases, for comparison with the count.\n",
+        "\n## What the model predicts\n\nThe predictions in two columns do not use any observation. “Catalog medians” \
+         is the probability of a fall with the medians of the catalog, under the unscaled record. “Prior” is the mean \
+         probability of a fall over the prior distribution of the unknowns. The central 90 % interval in parentheses \
+         includes the uncertainty of the fit.\nThe column “given half” uses the statement “half” (half of the barrels \
+         are on the floor). It gives the mean and the interval over the posterior distribution of the unknowns that \
+         follows from this statement.\nFor Napa College, the columns “prior” and “given half” include the uncertain \
+         factor by which the motion is multiplied; for the other stations this factor is 1.\nThe column “simulated \
+         falls” gives the number of simulated stacks that fall, and the number of simulated stacks. The simulations \
+         cover the whole range of the unknowns, which is wider than the prior, so this count must not be compared with \
+         the share that fell in a cellar.\nThe table [shares by height](field/shares.csv) also states the mean fitted \
+         probability of these cases, for comparison with the count.\n",
     );
     for quake in &observations.earthquake {
         shares(&mut text, quake, results);
@@ -164,7 +166,7 @@ fn shares(text: &mut String, quake: &Earthquake, results: &Results) {
     }
     let _ = write!(
         text,
-        "\n### {}\n\n| stack | levels | fall over the design | share, 95 % | catalog medians | prior | given half |\n\
+        "\n### {}\n\n| stack | levels | simulated falls | share, 95 % | catalog medians | prior | given half |\n\
          | :--- | ---: | ---: | :--- | ---: | :--- | :--- |\n",
         quake.name
     );
@@ -212,12 +214,12 @@ fn posterior(text: &mut String, results: &Results) {
         };
         let _ = writeln!(text, "| {given} | {} | {:.0} |", cells.join(" | "), one.effective);
     }
-    text.push_str("\nIn the row “maule”, the factor is on the motion at Curicó.\nThe effective number of draws is (Σ \
-                   L)² / Σ L²; if a statement gave no information, this number would equal the number of all \
-                   draws.\n\n![Share of barrels on the floor against friction, and friction before and after the \
-                   observations](field.svg)\n\nEach of the next tables gives the likelihood of each statement for \
-                   several ranges of one unknown, averaged over all other unknowns (the largest possible likelihood is \
-                   1):\n\n");
+    text.push_str("\nIn the row “maule”, the factor on the motion is the factor by which the motion at Curicó is \
+                   multiplied.\nThe effective number of draws is (Σ L)² / Σ L²; if the likelihood L were the same for \
+                   all draws, this number would equal the total number of draws.\n\n![Share of barrels on the floor \
+                   against friction, and friction before and after the observations](field.svg)\n\nEach of the next \
+                   tables gives the likelihood of each statement for several ranges of one unknown, averaged over all \
+                   other unknowns (the largest possible likelihood is 1):\n\n");
     let edges: [(usize, &str, &[f64]); 3] = [
         (0, "friction barrel–rack", &FRICTION),
         (1, "friction rack–ground", &GROUND),
@@ -322,26 +324,28 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     if let Some((prior, posterior)) = range("half") {
         let _ = writeln!(
             text,
-            "- **South Napa.** Half of 18,000 barrels were on the floor. The untuned model predicts {} of the barrels \
-             on the floor. If it is conditioned on this observation (“given half”), the model predicts {}. Here and \
-             below, the numbers in parentheses are the central 90 % interval over the unknowns.",
+            "- **South Napa.** Half of 18,000 barrels were on the floor. Without any observation, the model predicts \
+             {} of the barrels on the floor. If the model is conditioned on this observation (the statement “half”), \
+             it predicts {}. Here and below, the numbers in parentheses are the central 90 % interval over the \
+             unknowns.",
             of_share(prior),
             of_share(posterior)
         );
     }
     let _ = writeln!(
         text,
-        "- **Friction of barrels on racks.** The median is {} without any observation, {} given half, and {} given \
-         all statements. The observations hardly change it, so the default of the catalog, 0.30, is kept; the value \
-         of Candia et al. (2008), 0.22, lies within all three ranges.",
+        "- **Friction of barrels on racks.** The median is {} without any observation. It is {} given only the \
+         statement “half” (half of the barrels were on the floor), and {} given all statements. The observations \
+         hardly change it, so the default of the catalog, 0.30, is kept; the value of Candia et al. (2008), 0.22, lies \
+         within all three ranges.",
         unknown(results.given("prior"), 0),
         unknown(results.given("half"), 0),
         unknown(results.given("all statements"), 0),
     );
     let _ = writeln!(
         text,
-        "- **Stiffness of a seat.** The median is {} MN/m without any observation, {} given half, and {} given all \
-         statements.",
+        "- **Stiffness of a seat.** The median is {} MN/m without any observation. It is {} MN/m given only the \
+             statement “half”, and {} MN/m given all statements.",
         unknown(results.given("prior"), 2),
         unknown(results.given("half"), 2),
         unknown(results.given("all statements"), 2),
@@ -349,10 +353,10 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     if let Some((prior, posterior)) = range("room") {
         let _ = writeln!(
             text,
-            "- **The smaller room.** Almost every stack in the smaller room of Napa Barrel Care fell. The model \
-             predicts that {} of these stacks fall, and {} given half. The observation is possible if the stacks of \
-             this room were higher than the others, or at another angle to the motion; no report says whether they \
-             were.",
+            "- **The smaller room.** Almost every stack in the smaller room of Napa Barrel Care fell. Without any \
+             observation, the model predicts that {} of these stacks fall. Given the statement “half” (half of all \
+             barrels were on the floor), it predicts {}. The observation is possible if the stacks of this room were \
+             higher than the others, or at another angle to the motion; no report says whether they were.",
             of_share(prior),
             of_share(posterior)
         );
@@ -383,11 +387,11 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     let _ = writeln!(
         text,
         "- **Direction.** In {along} of {all} falls in three-dimensional simulations, the first body leaves its seat \
-         along the barrels. This is the direction that the reports name.\n- **Maule.** Averaged over the prior, {} \
-         of stacks of four levels fall along the barrels at Curicó and {} at Hualañé. The model thus explains that \
-         barrels fell, but no report says that nearly all did.\n- **Kaikōura.** No cellar experienced the motion \
-         that was recorded. Under this motion, {} of stacks of four levels fall in three-dimensional simulations.\n- \
-         **Far away.** {}",
+         along the barrels. This is the direction that the reports name.\n- **Maule.** Averaged over the prior, {} of \
+         stacks of four levels fall along the barrels at Curicó and {} at Hualañé. The model thus agrees with the \
+         reports that barrels fell. However, it predicts that nearly all stacks of four levels fell, and no report \
+         says so.\n- **Kaikōura.** No cellar experienced the motion that was recorded. Under this motion, {} of stacks \
+         of four levels fall in three-dimensional simulations.\n- **Far away.** {}",
         mean(results, "curico-along", 4),
         mean(results, "hualane-along", 4),
         mean(results, "waiau-space", 4),
@@ -436,22 +440,23 @@ fn far(cases: &[FieldCases]) -> String {
 const UNEXPLAINED: &str = "
 ## What remains unexplained
 
-- **Friction and stiffness.** Of the stacks with four to six levels, most fall in the model for nearly every \
-friction, and at least the bottom level of a fallen stack remains standing. About half of the barrels are therefore \
-on the floor with almost any constants. Counts of fallen stacks of two and three levels would narrow the ranges of \
-the constants, because the friction decides whether such stacks fall. Nobody has published such counts.
+- **Friction and stiffness.** In the model, most stacks of four to six levels fall for nearly every value of the \
+friction coefficient. At least the bottom level of a fallen stack remains standing. Therefore, about half of the \
+barrels are on the floor, almost regardless of the values of the constants. Counts of fallen stacks of two and three \
+levels would narrow the ranges of the constants, because the friction decides whether such stacks fall. Nobody has \
+published such counts.
 - **Why half fell and half did not.** In the model this depends on the motion in the cellar and on the direction of \
 the rows, neither of which is known. The heights of the stacks in each room, the direction of the rows and a record \
 inside the building would explain more than any test of friction.
-- **The smaller room and the rest of the cellar.** One set of constants explains both only if the stacks \
-in the smaller room had another height or another orientation than the other stacks. Stacks that knock other stacks \
-over would also explain both, but such impacts are not simulated: each stack stands alone on an open floor, without neighbors, walls or \
-aisles. The model error of 0.10, which is meant to allow for this, is a guess.
+- **The smaller room and the rest of the cellar.** One set of constants explains both only if the stacks in the \
+smaller room differed from the other stacks in height or in orientation. Stacks that knock other stacks over would \
+also explain both, but such impacts are not simulated: each stack stands alone on an open floor, without neighbors, \
+walls or aisles. The model error of 0.10, which is meant to allow for this, is a guess.
 - **Empty barrels.** Many barrels were empty in August 2014 (Press Democrat 2014, above). In the model all are full.
 - **Long motions.** Under both records of Maule, racks walk until they fall off, and the first loss of a seat occurs \
-after 30 to 50 s. If the stacks in Chile were of the simulated kind, nearly all stacks near Curicó must have fallen, \
-but nobody reports this. It is not known which racks were used there, or how high they were stacked. Walking over \
-many cycles is the part of the model with the least evidence ([rack-walk.md](rack-walk.md)).
+after 30 to 50 s. If the stacks in Chile had been of the simulated kind, nearly all stacks near Curicó would have \
+fallen. No report says that they did. It is not known which racks were used there, or how high they were stacked. \
+Walking over many cycles is the part of the model with the least evidence ([rack-walk.md](rack-walk.md)).
 - **Height.** In the model, the share of stacks that fall grows from two to five levels, but not beyond. Whether \
 stacks of six levels fell more often than stacks of four has not been published.
 - **Posts.** Racks on posts stand in the model as they did in the earthquake, but no number supports the words “next \
