@@ -93,7 +93,7 @@ fn walk(shown: Shown, stiffness: f64, friction: f64, cycle: Cycle) -> Result<f64
     Ok(sum / f64::from(VARIANTS))
 }
 
-/// Returns the smallest model of the upper level: a barrel with its share of a rack on two rails.
+/// Returns the simplest model of the upper level: a barrel with its share of a rack on two rails.
 fn block(stiffness: f64, friction: f64) -> TwoSeats {
     let (mass, height) = (290.0, 0.53);
     // A damping ratio of 0.156, which follows from the catalog's restitution of 0.8 for a quarter of a barrel.

@@ -1,4 +1,4 @@
-//! Walk of a rack on soft seats: the rigid limit, and comparison of the smallest model with the program.
+//! Walk of a rack on soft seats: the rigid limit, and comparison of the simplest model with the program.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
 use crate::two_seats::{Cycle, GRAVITY, TwoSeats, newmark};

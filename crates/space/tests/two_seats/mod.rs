@@ -1,4 +1,4 @@
-//! The smallest model of a rack that walks: a rigid block on two seats, on oscillating ground. Each seat is a spring
+//! The simplest model of a rack that walks: a rigid block on two seats, on oscillating ground. Each seat is a spring
 //! with a damper that acts on approach, and friction with a tangential spring.
 //!
 //! The model shares no line with the program. Its integrator is the semi-implicit Euler method with steps of a
