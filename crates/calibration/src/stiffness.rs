@@ -79,7 +79,7 @@ pub fn stiffness(
     }
     if half > slope {
         warnings.push(
-            "the interval of k reaches zero: apply higher loads, or measure more rows".into(),
+            "the interval of k reaches zero: apply higher loads, or add measurements".into(),
         );
     }
     let scatter = (found.squares / found.freedom as f64).sqrt();

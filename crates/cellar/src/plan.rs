@@ -469,7 +469,7 @@ fn walls(
         let border = if cellar.room.walls { "wall" } else { "edge of the room" };
         let block = stacks[at].block + 1;
         let message = format!(
-            "stack {} extends {} beyond the {side} {border}{more}: move the block, take fewer stacks, or enlarge the \
+            "stack {} extends {} beyond the {side} {border}{more}: move the block, use fewer stacks, or enlarge the \
              room",
             stacks[at].name,
             meters(depth)

@@ -115,7 +115,8 @@ pub enum RoomFailure {
     /// There are too many bodies.
     #[error(
         "the room has {bodies} barrels, racks and other bodies, but at most {MOST_BODIES} are allowed (a run of that \
-         size needs about 3 GB): divide it into rooms between which nothing can fall"
+         size needs about 3 GB): divide it into rooms such that nothing can fall from one \
+         room into another"
     )]
     Large {
         /// Number of bodies.

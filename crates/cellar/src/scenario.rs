@@ -568,7 +568,7 @@ impl Cellar {
                 if total > MOST_BARRELS {
                     let message = format!(
                         "with row {} of this block the cellar has more than {MOST_BARRELS} barrels, the maximum that \
-                         fits into memory: take fewer rows or stacks, or split the cellar into rooms",
+                         fits into memory: use fewer rows or stacks, or split the cellar into rooms",
                         row + 1
                     );
                     return Err(reader.inconsistent("rows", message));

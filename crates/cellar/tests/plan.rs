@@ -160,7 +160,7 @@ fn the_number_of_barrels_is_limited_before_anything_is_built() {
         changed(&["block.1.rows=500", "block.1.stacks=500", "stack.columns=40", "stack.levels=12"]);
     let found = found.unwrap_err();
     assert!(found.contains(&format!("more than {MOST_BARRELS} barrels")), "{found}");
-    assert!(found.contains("with row 1 of this block") && found.contains("take fewer"), "{found}");
+    assert!(found.contains("with row 1 of this block") && found.contains("use fewer"), "{found}");
 }
 
 #[test]

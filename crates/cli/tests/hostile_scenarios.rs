@@ -214,7 +214,7 @@ fn scenes_that_fill_all_memory_are_refused_at_the_body_that_is_too_many() {
                  nodes = { spacing = \"0.2 mm\" }\nposition = [\"0 m\", \"0 m\"]";
     let plane: String = (0..120).map(|name| body(name, nodes)).collect();
     let plane = format!("schema = 1\nkind = \"free\"\n{plane}");
-    refuse("nodes", plane.as_bytes(), &["more than 2000000 contact nodes", "take fewer bodies"]);
+    refuse("nodes", plane.as_bytes(), &["more than 2000000 contact nodes", "use fewer bodies"]);
     let part = "{ solid = { type = \"ball\", radius = \"0.1 m\" } }";
     let solid = format!(
         "solid = {{ type = \"compound\", parts = [{}] }}\nposition = [\"0 m\", \"0 m\", \"0 m\"]",

@@ -84,8 +84,8 @@ pub struct Conditional {
 /// Influence of one constant on the share of failures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Influence {
-    /// Total Sobol' index: the fraction of the variance of the share that remains if all other constants are known.
-    /// It includes the interactions of this constant with the others.
+    /// Total Sobol' index: the part of the variance of the share that remains if all other constants are known, as a
+    /// fraction of the whole variance. It includes the interactions of this constant with the others.
     pub total: f64,
     /// Width of the credible interval of the share if this constant is known exactly and all other constants are
     /// unknown. The width depends on the value of this constant; this field is the mean of the width over these

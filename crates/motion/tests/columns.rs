@@ -123,7 +123,7 @@ fn words_of_a_sentence_are_no_names_and_the_header_states_step_count_and_unit() 
     let other = file.replace("Number", "Duration (s) : 32\nNumber");
     refused(
         &other,
-        "expected samples that last 32 s, as stated here, found 3200 samples that last 16",
+        "expected a total duration of 32 s, as stated here, found a total duration of 16",
     );
     let two = file.replace("Number", "dt = 0.01 s\nNumber");
     refused(&two, "expected a step of 0.005 s, as stated on line 3, found 0.01 s");

@@ -308,7 +308,7 @@ pub(crate) fn reference(of: &str) -> PyResult<String> {
         "scenario" => Ok(fields_of::markdown()),
         "study" => Ok(barrelstack_campaign::study::reference()),
         other => Err(PyValueError::new_err(format!(
-            "there is no reference of \"{other}\"; choose \"scenario\" or \"study\""
+            "there is no reference documentation for \"{other}\"; choose \"scenario\" or \"study\""
         ))),
     }
 }

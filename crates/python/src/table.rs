@@ -270,7 +270,7 @@ fn of_values(heading: &str, values: &[Bound<'_, PyAny>]) -> PyResult<Values> {
         }
         let kind = value.get_type().name()?;
         Err(PyTypeError::new_err(format!(
-            "the column `{heading}` contains values of type {kind}; expected numbers, booleans or texts"
+            "the column `{heading}` contains values of type {kind}; expected numbers, booleans or strings"
         )))
     };
     values.iter().map(text).collect::<PyResult<_>>().map(Values::Text)
@@ -317,7 +317,8 @@ fn of_array(heading: &str, array: &ArrayRef) -> PyResult<Values> {
         DataType::Null => Values::Text(vec![None; array.len()]),
         other => {
             return Err(PyTypeError::new_err(format!(
-                "the column `{heading}` contains {other}; expected whole numbers, numbers, booleans or texts"
+                "the column `{heading}` contains {other}; expected integers, floating-point numbers, booleans or \
+                 strings"
             )));
         }
     })

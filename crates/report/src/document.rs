@@ -42,8 +42,8 @@ impl Document {
 }
 
 /// Note on what a report does and does not state, shown after the provenance.
-pub(crate) const SCOPE: &str = "This page states what a model computes from the inputs that it lists. It does not replace the \
-                         judgment of an engineer who has inspected the stack, its racks and its floor.";
+pub(crate) const SCOPE: &str = "This page states the results of a model for the inputs that are listed on the page. \
+                         It does not replace the judgment of an engineer who has inspected the stack, its racks and its floor.";
 
 /// Labels of the lines after the provenance that are filled in by hand.
 pub(crate) const SIGNATURE: [&str; 4] = ["project", "prepared by", "checked by", "date"];

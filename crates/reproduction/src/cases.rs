@@ -42,16 +42,16 @@ impl Motion {
     /// Returns a short name of the motion.
     pub(super) fn name(&self) -> String {
         match self {
-            Self::Paper { .. } => "Hollywood Storage N-S at 60 cm/s".into(),
-            Self::Other { file, .. } => format!("{file} at 60 cm/s"),
-            Self::Bundled => "South Napa at 60 cm/s".into(),
+            Self::Paper { .. } => "the Hollywood Storage record (N-S) scaled to 60 cm/s".into(),
+            Self::Other { file, .. } => format!("the record {file} scaled to 60 cm/s"),
+            Self::Bundled => "the South Napa record scaled to 60 cm/s".into(),
         }
     }
 
     /// Returns the name of the motion for captions, with a remark if it is not the paper's record.
     pub(super) fn words(&self) -> String {
         let name = self.name();
-        if self.is_papers() { name } else { format!("{name} instead of the paper's record") }
+        if self.is_papers() { name } else { format!("{name}, which replaces the paper's record") }
     }
 }
 

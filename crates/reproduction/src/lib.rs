@@ -1,7 +1,7 @@
 //! Reproduction of the paper of Candia, de la Llera and Almazán (2008): its results compared with ours, case by case.
 //!
 //! All cases use one geometry, the catalog's rack `candia-2008`, and no parameter is fitted to a single case.
-//! Where a number differs, studies vary the quantities that the paper does not state and show their effects.
+//! To explain differences, studies vary the quantities that the paper does not state, and show their effects.
 
 // Results must be bit-identical on every machine, so transcendental functions are those of `libm`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -97,8 +97,8 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
         vec![Block::heading(2, "Published results and our results"), Block::Table(overview(rows))];
     blocks.push(text(
         "A number agrees if it is within ±20 % of the published number; a finding agrees if the same event occurs. For \
-         some numbers, the project also accepts a wider band, since the paper does not state the dimensions of its \
-         racks.",
+         some numbers, a larger difference is also accepted, since the paper does not state the dimensions of its \
+         racks; the column “band” gives the accepted range.",
     ));
     let reasons = vec![Block::Table(reasons(rows))];
     let summary = "How each row is measured, and why it differs";
@@ -181,13 +181,17 @@ fn figure_6(results: &Results) -> Vec<Block> {
     blocks.push(figures::strip(
         &scene,
         "figure-6a",
-        &format!("Six barrels, μ rack–ground 0.4, under {under}."),
+        &format!(
+            "Six barrels under {under}. The friction coefficient between rack and ground is 0.4."
+        ),
         figures::moments(six),
     ));
     blocks.push(figures::player(
         &scene,
         "six-barrels",
-        &format!("Animation of the same run: six barrels, μ rack–ground 0.4, under {under}."),
+        &format!(
+            "Animation of the six barrels under {under}. The friction coefficient between rack and ground is 0.4."
+        ),
     ));
     blocks.push(Block::heading(3, "(b) line load on barrel 1 (normal stress in the paper)"));
     blocks.extend(figures::envelope(
@@ -195,8 +199,8 @@ fn figure_6(results: &Results) -> Vec<Block> {
         1,
         "figure-6b",
         &format!(
-            "Line load on barrel 1 (B1.1), that is, the normal force per meter of boundary: at rest, and the largest \
-             until the first loss of a seat, under {under}."
+            "Line load on barrel 1 (B1.1) under {under}. The line load is the normal force per meter of boundary. The \
+             figure shows the line load at rest, and its largest value until the first loss of a seat."
         ),
     ));
     blocks.push(Block::heading(3, "(c) horizontal displacement of barrels 1, 4 and 7"));
@@ -207,7 +211,8 @@ fn figure_6(results: &Results) -> Vec<Block> {
             run,
             id,
             &format!(
-                "Horizontal displacement relative to the ground, μ rack–ground {friction}, under {under}."
+                "Horizontal displacement relative to the ground under {under}. The friction coefficient between rack \
+                 and ground is {friction}."
             ),
         ));
     }
@@ -228,9 +233,9 @@ fn stand_in(results: &Results) -> String {
         _ => summary.outcome.kind.to_owned(),
     };
     format!(
-        "This is not the paper's motion, so the results cannot be compared with the paper's numbers. Results of the \
-         six barrels under {}: for μ = 0.4, {}, with a residual slip of {} cm; for μ = 0.1, {}, with a residual slip \
-         of {} cm.",
+        "This is not the paper's motion, so the results cannot be compared with the paper's numbers. The six \
+         barrels were run under {}. With μ = 0.4, the outcome is “{}” and the residual slip is {} cm. With μ = 0.1, \
+         the outcome is “{}” and the residual slip is {} cm.",
         results.motion.name(),
         what(six),
         slip(six),
@@ -296,14 +301,14 @@ fn figure_7(results: &Results) -> Vec<Block> {
         moments,
     ));
     blocks.push(Block::heading(3, "(c) line load on bodies 2 and 3 (normal stress in the paper)"));
-    for (number, what) in [(2, "barrel, body 2 (B1.2)"), (3, "rack, body 3 (R1)")] {
+    for (number, what) in [(2, "barrel B1.2 (body 2)"), (3, "rack R1 (body 3)")] {
         blocks.extend(figures::envelope(
             full,
             number,
             &format!("figure-7c-body-{number}"),
             &format!(
-                "Line load on the {what}, that is, the normal force per meter of boundary: at rest, and the largest \
-                 until the first loss of a seat."
+                "Line load on {what}. The line load is the normal force per meter of boundary. The figure shows the \
+                 line load at rest, and its largest value until the first loss of a seat."
             ),
         ));
     }

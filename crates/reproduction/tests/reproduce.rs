@@ -117,7 +117,7 @@ fn every_figure_of_the_paper_is_drawn() {
         assert!(bundle.text.contains(&format!("figures/{figure}")), "{figure}");
     }
     assert!(
-        html(&found().document).contains("under South Napa at 60 cm/s"),
+        html(&found().document).contains("under the South Napa record scaled to 60 cm/s"),
         "captions must name the motion"
     );
     let drawn = bundle.files.iter().filter(|file| file.bytes.starts_with(b"<svg"));

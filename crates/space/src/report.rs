@@ -27,8 +27,8 @@ pub fn player(run: &Run, scene: Scene) -> Player {
     Player {
         id: "player".into(),
         caption: format!(
-            "The computed motion of the run, to scale, in a view that can be turned. Arrows show contact forces, each \
-             drawn on the body that the force pushes up.{}",
+            "The computed motion of the run, to scale, in a view that can be turned. Arrows show contact \
+             forces, each drawn on the body that the force pushes up.{}",
             legend(&scene)
         ),
         scene: Arc::new(Scene { ground: ground_histories(run), ..scene }),
@@ -56,9 +56,9 @@ pub fn document(answer: &Answer) -> Document {
     let mut blocks = vec![Block::Players(Players {
         id: "players".into(),
         caption: format!(
-            "One run, in a view that can be turned, or in three flat views at the same time and scale. In the flat views, \
-             bodies are drawn in the order of their depth at rest. Arrows show contact forces, each drawn on the body \
-             that the force pushes up.{}",
+            "One run, in a view that can be turned, or in three flat views that show the same instant at the same \
+             scale. In the flat views, bodies are drawn in the order of their depth at rest. Arrows show contact \
+             forces, each drawn on the body that the force pushes up.{}",
             legend(&scenes[0].1)
         ),
         panes: scenes.iter().map(pane).collect(),
@@ -191,7 +191,7 @@ fn variants(summary: &Summary) -> Option<Table> {
         format!(
             "Ranges span the 5th to the 95th percentile of the variants. The first body is the body that loses its \
              seat first; its direction is the direction in which it leaves the seat. The direction of a barrel that \
-             fell{} is the direction from its position at rest to its position at the end of the variant.",
+             fell{} is the direction from its position at rest to its position at the end of the run.",
             spread.counted("the first loss of a seat")
         ),
         &[("", ""), ("in three dimensions", "")],

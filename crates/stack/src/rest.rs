@@ -33,7 +33,7 @@ fn remedy(lack: &Lack) -> String {
             "put a support under the body, or let it fall from the start (run.settle = false)".to_owned()
         }
         Lack::Stiffness { interface, .. } => format!(
-            "check whether interface.{interface}.stiffness has the right unit, or take fewer levels"
+            "check whether interface.{interface}.stiffness has the right unit, or use fewer levels"
         ),
         Lack::Friction { interface, .. } => format!(
             "to hold the body, try a larger coefficient of interface.{interface}.friction, or place the body where it \

@@ -142,13 +142,13 @@ pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
         (Quantity::OverturningBorder | Quantity::UpliftBorder, Some("m/s")) => "m/s",
         (quantity, unit) => {
             return Err(refuse(&format!(
-                "expect.unit: the unit of a boundary must be \"g\" or \"m/s\", and a time or a displacement must be \
-                 stated without a unit; found {unit:?} for {quantity:?}"
+                "expect.unit: for a limit of overturning or uplift, the unit must be \"g\" or \"m/s\"; for a time or a \
+                 displacement, no unit may be stated; found {unit:?} for {quantity:?}"
             )));
         }
     };
     if expect.quantity.beyond().is_some() && (expect.vary.is_none() || expect.between.is_none()) {
-        return Err(refuse(&"expect: a boundary needs `vary` and `between`"));
+        return Err(refuse(&"expect: a limit of overturning or uplift needs `vary` and `between`"));
     }
     let scene = scene.to_owned();
     Ok(Problem {

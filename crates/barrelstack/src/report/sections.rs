@@ -354,8 +354,10 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
         amplification: envelope.amplification(),
         coordinate: (coordinate.into(), unit.into()),
     };
-    let caption =
-        format!("Line load on {name}: at rest, and the largest until the first loss of a seat.");
+    let caption = format!(
+        "Line load (normal force per meter of boundary) on {name}: at rest, and its largest value until the first loss \
+         of a seat."
+    );
     Figure::new(format!("stress-{name}"), caption, picture)
 }
 

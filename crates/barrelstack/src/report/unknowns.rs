@@ -41,8 +41,9 @@ fn table(place: &str, spread: &Spread) -> Table {
              collapse with all of these constants at their medians. For each constant, the table gives the 5 % \
              fractile, the median and the 95 % fractile, and for each of these values the share of stacks that \
              collapse, averaged over the other constants. The column “change” gives the 95 % interval of the \
-             difference between the largest and the smallest share as the constant varies. The column “variance” \
-             gives the fraction of the variance of the share that would remain if all other constants were known. \
+             difference between the largest and the smallest share as the constant varies. If all \
+             other constants were known, only a part of the variance of the share would remain; the column “variance” \
+             gives this part as a fraction. \
              The column “range left” gives the average width of the range of shares that would remain if the \
              constant were measured exactly.",
             range[0], range[1]

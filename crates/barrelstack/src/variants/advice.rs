@@ -9,7 +9,7 @@ use super::words::percent;
 use crate::scenario::title::{counted, number};
 
 impl Remedy {
-    /// Describes the remedy, or states that no tried change suffices.
+    /// Describes the remedy, or states that none of the changes that were tried suffices.
     pub fn sentence(&self) -> String {
         let any = |kind: &str| self.tried.iter().any(|one| one.kind == kind);
         let straps = self.pretensions();
@@ -67,8 +67,8 @@ impl Remedy {
         )
     }
 
-    /// If a lower stack suffices, states which tried changes would not have been enough: the numbers of levels above
-    /// that of this stack, and the straps if no straps suffice. Empty if there are no such changes.
+    /// If a lower stack suffices, states which of the changes that were tried would not have been enough: the numbers
+    /// of levels above that of this stack, and the straps if no straps suffice. Empty if there are no such changes.
     fn not_enough(&self) -> String {
         let Some(height) = &self.height else { return String::new() };
         let higher = self
@@ -234,8 +234,8 @@ impl Remedy {
         let caption = format!(
             "Changes that were tried, all of them with the same variants. A change suffices if at least {:.0} % of the \
              variants stand{stand}. The variants are run in blocks, beginning with the variants that are likely to \
-             fall. A change is rejected as soon as too many variants have fallen at the end of a block, so the share \
-             of stacks that fall with a rejected change is not known. The intervals hold simultaneously, with 95 % \
+             fall. After each block, a change is rejected if too many variants have fallen; the share of stacks that \
+             fall with a rejected change is therefore not known. The intervals hold simultaneously, with 95 % \
              confidence, for all {} changes that may be tried{tried}. If friction, stiffness and damping of the seats \
              are drawn from their distributions, the share of stacks that fall lies within the range over the \
              uncertain constants with a probability of 95 %. The range includes the sampling error. The last column \
@@ -285,7 +285,7 @@ impl Remedy {
     }
 }
 
-/// Returns the name of a tried change, such as "three levels" or "five levels held together by straps
+/// Returns the name of a change that was tried, such as "three levels" or "five levels held together by straps
 /// tightened to 4 kN".
 pub(super) fn name(tried: &Tried) -> String {
     name_of(tried.levels, tried.pretension)

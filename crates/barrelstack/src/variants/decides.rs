@@ -36,8 +36,8 @@ described! {
         pub shares: Vec<ShareAt>,
         /// 95 % interval of the difference between the largest and the smallest value of `shares`.
         pub difference: [f64; 2] as "1",
-        /// Total-effect index: fraction of the variance of the share that remains if all other
-        /// constants are known.
+        /// Total-effect index: the part of the variance of the share that remains if all other constants are known,
+        /// as a fraction of the whole variance.
         pub total: f64 as "1",
         /// Width of the 95 % range of the share of collapses if this constant were known exactly and all other
         /// constants remained uncertain; the mean over the values of this constant.

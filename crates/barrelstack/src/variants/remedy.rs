@@ -36,23 +36,23 @@ pub use self::search::{ENOUGH, Judged, Verdicts};
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
 described! {
-    /// Changes of a collapsed stack that were tried, and those that would have kept it up.
+    /// Changes that were tried on a stack that collapses, and the changes with which the stack stands.
     #[derive(Clone, Debug, Default, PartialEq)]
     pub struct Remedy {
         /// Share of variants that must stand in every plane.
         pub required_share: f64 as "1",
-        /// The largest number of levels that suffices; null if no tried number does.
+        /// The largest number of levels that suffices; null if none of the numbers that were tried suffices.
         pub height: Option<Tried>,
-        /// The loosest straps that suffice; null if no tried straps do.
+        /// The loosest straps that suffice; null if none of the pretensions that were tried suffices.
         pub straps: Option<Tried>,
-        /// Share of the random draws of the uncertain constants for which the change in `height` leaves fewer stacks that
-        /// fail than the change in `straps`; a draw for which both leave the same share counts as one half. Null if
-        /// `height` or `straps` is null, or if the `range` of either is null.
+        /// Share of the random draws of the uncertain constants in which fewer stacks fail with the change in `height`
+        /// than with the change in `straps`; a draw with equal shares counts as one half. Null if `height` or `straps`
+        /// is null, or if the `range` of either is null.
         pub height_before_straps: Option<f64> as "1",
-        /// Number of changes that may be tried, each in every plane; the intervals hold
-        /// simultaneously for all these changes.
+        /// Number of changes that the search may try, each in every plane. The confidence level of the intervals
+        /// applies to all these changes jointly.
         pub candidates: u32,
-        /// Number of variants with which a change is tried, unless it is rejected earlier.
+        /// Number of variants that are run with a change, unless the change is rejected earlier.
         pub variants: u32,
         /// Every change that was tried; changes of height come first.
         pub tried: Vec<Tried>,
@@ -63,7 +63,7 @@ described! {
         pub comparison: Option<String>,
     }
 
-    /// A change of the stack that was tried.
+    /// A change that was tried on the stack.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Tried {
         /// Kind of the change.
@@ -74,8 +74,8 @@ described! {
         pub pretension: Option<f64> as "N",
         /// The change as overrides of the scenario.
         pub changes: Vec<String>,
-        /// True if enough variants stand; false if too many fail; null if too few were run to know, because looser straps
-        /// suffice or because the search was stopped.
+        /// True if enough variants stand; false if too many variants fail. Null if this is not known, because not all
+        /// variants were run: looser straps suffice, or the search was stopped.
         pub suffices: Option<bool>,
         /// Number of variants counted. Not all variants are counted if the change was rejected early or if `suffices` is
         /// null. Variants that are likely to fall are run first.

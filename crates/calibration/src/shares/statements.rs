@@ -204,8 +204,9 @@ impl Statements {
         for quake in &read.earthquake {
             if !(0.0..=MOST_MOTION).contains(&quake.motion) {
                 return Err(StatementsError(format!(
-                    "{file}: earthquake `{}`: `motion` is the standard deviation of a logarithm and must lie between 0 \
-                     and {MOST_MOTION}, found {}",
+                    "{file}: earthquake `{}`: `motion` must lie between 0 and {MOST_MOTION}, found {}; it is the \
+                     standard deviation of ln r, where r is the motion in a cellar divided by the motion at the \
+                     station",
                     quake.name, quake.motion
                 )));
             }

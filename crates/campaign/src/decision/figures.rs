@@ -125,8 +125,8 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
     Figure::new(
         "modes",
         "Chance of collapse in each mode (cumulative incidence). The modes compete: their chances add up to the chance \
-         of collapse, and one mode may become rarer where another becomes more frequent. The chance of collapse is \
-         divided among the modes by probit regression.",
+         of collapse, and one mode may become rarer where another becomes more frequent. The part of \
+         each mode in the chance of collapse is estimated by probit regression.",
         Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
     )
 }
@@ -191,7 +191,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
         "ida",
         format!(
             "Incremental dynamic analysis: {} as a function of the peak drift of the top while the stack stands. A \
-             line reaches the right edge at the level at which the stack collapses.{note}",
+             collapse is plotted at the right edge, at the level of shaking that causes it.{note}",
             measure.label
         ),
         Plot {

@@ -158,8 +158,8 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
         }
         Ok([median, dispersion]) => {
             said.push(format!(
-                "The lognormal curve is fitted by maximum likelihood (Baker 2015). Its standard errors are {} of ln θ \
-                 and {} of ln β ({}).",
+                "The lognormal curve is fitted by maximum likelihood (Baker 2015). Its standard errors are {} for ln θ \
+                 and {} for ln β ({}).",
                 significant(median, 2),
                 significant(dispersion, 2),
                 if curve.left_out.is_some() {

@@ -20,13 +20,13 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
     blocks.push(Block::Table(recorded(all)));
     blocks.push(Block::List(vec![
         "Observed near Napa: peak accelerations above 0.5 g and velocities above 50 cm/s (USGS 2015). Half of the \
-         18,000 barrels of one store fell, and almost every stack in one of its rooms collapsed (Wines & Vines \
+         18,000 barrels in one warehouse fell, and almost every stack in one of its rooms collapsed (Wines & Vines \
          2014). Most stacks that collapsed in the county stood on portable racks for two barrels (FEMA P-1024, as \
          reported by Wines & Vines 2017)."
             .into(),
         "This is a weak check. The share of stacks that collapsed was not published for each height, and the shaking \
-         at the stores was not recorded. The stacks stood in rows, where a falling stack can knock down its neighbors; \
-         this effect makes more stacks fall and is not modeled here."
+         at the warehouses was not recorded. The stacks stood in rows, where a falling stack can knock down its \
+         neighbors; this effect makes more stacks fall and is not modeled here."
             .into(),
         if all.request.in_space {
             "Each run is three-dimensional, under all components of its motion; the components of a record are scaled \
@@ -79,12 +79,12 @@ fn observations(all: &Heights) -> Table {
     table.rows.push(row(
         "stacks that collapse, at 50 and 70 cm/s",
         collapse,
-        "almost every stack in one room of 10,000 ft²; no share over a whole store is known",
+        "almost every stack in one room of 10,000 ft²; no share over a whole warehouse is known",
     ));
     table.rows.push(row(
         "barrels on the floor, at 50 and 70 cm/s",
         fallen,
-        "half of 18,000 barrels of one store",
+        "half of 18,000 barrels in one warehouse",
     ));
     table
 }

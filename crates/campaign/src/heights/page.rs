@@ -238,9 +238,9 @@ fn over_constants_table(all: &Heights) -> Table {
     by_height(
         all,
         format!(
-            "Chance of collapse: 95 % range over the uncertain constants of the seats{}, and the constant on which the \
-             chance depends most.",
-            in_planes(all, ", in the direction with the higher upper end", "")
+            "95 % range of the chance of collapse as the uncertain constants of the seats vary, and the constant on \
+             which this chance depends most.{}",
+            in_planes(all, " Of both directions, the cell shows the direction with the higher upper end.", "")
         ),
         |levels, velocity| {
             Cell::maybe(widest(all, levels, velocity).map(|(height, _, [from, to])| {
@@ -347,12 +347,14 @@ fn blocks(all: &Heights) -> Vec<Block> {
         heading("How high is safe"),
         Block::Table(card(all)),
         text(format!(
-            "Each cell shows the share of stacks that collapse{}, and in brackets the range of the true chance; each \
-             end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or \
-             below; if the chance of a stack is above this second limit, at most one of 20 studies rates the stack \
-             low. ! medium: at most {:.0} %. ✗ high: more. These limits were chosen by judgment.",
-            in_planes(all, ", in the direction with the higher upper bound", ""),
+            "Each cell shows the share of stacks that collapse, and in brackets an interval of the chance of \
+             collapse. {}The chance is above the lower end of the interval with 95 % confidence, and below its upper \
+             end with 95 % confidence. ✓ low: a share of at most {:.0} %, and an upper end of at most {:.0} %. If the \
+             chance of collapse of a stack is above {:.0} %, at most one of 20 studies rates the stack low. ! medium: \
+             a share of at most {:.0} %. ✗ high: all other results. These limits were chosen by judgment.",
+            in_planes(all, "Of both directions, the cell shows the direction with the higher upper end. ", ""),
             100.0 * LOW.0,
+            100.0 * LOW.1,
             100.0 * LOW.1,
             100.0 * MEDIUM
         )),
@@ -360,14 +362,14 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(
             "If the friction, stiffness and damping of a stack are drawn once from their distributions, its chance of \
              collapse lies within the range with a probability of 95 %. The range includes the sampling error. The \
-             ranges in brackets in the table above are for stacks whose constants are drawn anew for every run. A \
+             intervals in brackets in the table above are for stacks whose constants are drawn anew for every run. A \
              constant is named only if it changes the chance by 20 percentage points or more over its own range. \
              Measure this constant, and state its value in a scenario of your own.",
         ),
         text(
             "To find the row of your site, use the peak ground velocity of your design earthquake, or read it from a \
-             ShakeMap of a past earthquake. The Roman numeral is the intensity that corresponds to the velocity on \
-             average in California (Wald et al. 1999); elsewhere, this relation is an assumption.",
+             ShakeMap of a past earthquake. The Roman numeral is the average intensity observed at this velocity in \
+             California (Wald et al. 1999); elsewhere, this relation is an assumption.",
         ),
         Block::Figure(chart(all)),
         heading(in_planes(all, "Both directions", "In all directions")),
@@ -631,8 +633,8 @@ fn rests_on(all: &Heights) -> Vec<String> {
         "Scaled motions differ from the motions of stronger earthquakes, which last longer and have longer periods. \
          Results at levels far from the original strength of a motion are the least certain."
             .into(),
-        "In the computation of the ranges, every motion counts as one observation. The ranges apply to motions like \
-         these and do not cover errors of the model."
+        "When the ranges are computed, every motion counts as one observation. The ranges apply to motions like these \
+         and do not cover errors of the model."
             .into(),
         "The racks are those of the catalog; several of their dimensions are assumptions. The folder holds the studies of this \
          page, which you can change and run for racks and rooms of your own."

@@ -29,9 +29,9 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             text(
                 "The velocity at which one stack in ten collapses is read from the lognormal curve fitted to all runs \
                  by maximum likelihood, with its 95 % interval (clustered by motion) in brackets. The score is the \
-                 smallest of these velocities, rounded down. If the friction, stiffness and damping of a stack are \
-                 drawn from their distributions, the velocity for this stack lies within the range over the uncertain \
-                 constants with a probability of 95 %. The range includes the sampling error.",
+                 smallest of these velocities, rounded down. If the friction, stiffness and damping of the seats are \
+                 drawn from their distributions, the velocity at which one stack in ten collapses lies within the \
+                 range over the uncertain constants with a probability of 95 %. The range includes the sampling error.",
             ),
             Block::Figure(chart(sheet)),
             heading("The protocol"),

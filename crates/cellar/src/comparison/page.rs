@@ -82,8 +82,9 @@ fn change(change: &Change, scale: f64) -> Cell {
 pub fn table(found: &CellarComparison) -> Table {
     Table::of(
         "Loss against capacity; the layouts are sorted by the share of barrels that fall. Means over the variants, \
-         with their 95 % intervals; differences from the first layout are computed variant by variant. Wine and cost \
-         are expected losses under the central assumption about how many of the fallen barrels burst.",
+         with their 95 % intervals; differences from the first layout are computed variant by variant. The columns \
+         “wine lost” and “cost” give expected losses, under the central assumption about how many fallen barrels \
+         burst.",
         rows(found),
         &[
             ("layout", "", &Row::name),

@@ -226,7 +226,7 @@ pub fn sentences(found: &CellarComparison) -> Vec<String> {
     }
     all.extend(found.left_out.iter().map(|one| {
         let LeftOut { name, reason } = one;
-        format!("The layout \"{name}\" was not run: {reason}.")
+        format!("The layout \"{name}\" was not run, because {reason}.")
     }));
     all
 }

@@ -170,7 +170,7 @@ impl Reader<'_> {
             };
             if text.trim().is_empty() {
                 let message = format!(
-                    "`{}` is empty; give a text or leave the field out",
+                    "`{}` is empty; give the field a value or leave it out",
                     reader.path_of(name)
                 );
                 return Err(reader.sources.error(node.origin, Problem::Inconsistent { message }));

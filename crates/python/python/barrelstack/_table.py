@@ -32,7 +32,7 @@ class Column(NamedTuple):
     """
 
     name: str
-    #: SI unit; empty for dimensionless numbers and for texts.
+    #: SI unit; empty for dimensionless numbers and for strings.
     unit: str
     #: Role: ``key``, ``factor``, ``motion``, ``intensity``, ``outcome``, ``demand`` or ``run``.
     role: str
@@ -56,7 +56,7 @@ class Columns:
     _index: str | None = None
 
     def _arrays(self) -> list[tuple[Column, NDArray[Any]]]:
-        """Returns the columns as arrays: integers, numbers with NaN, or texts with None."""
+        """Returns the columns as arrays: integers, numbers with NaN, or strings with None."""
         raise NotImplementedError
 
     def to_pandas(self) -> pandas.DataFrame:

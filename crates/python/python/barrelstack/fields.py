@@ -290,17 +290,17 @@ class FreeInterfaceFields(TypedDict, total=False):
     """The contact law between two kinds of bodies."""
 
     basis: Literal["node", "length", "seat"]
-    """Unit for which stiffness and damping are stated: one contact node, or one meter of boundary. Default: node."""
+    """Stiffness and damping are stated per contact node (node) or per meter of boundary (length). Default: node."""
     between: list[str]
     """The two kinds: the first kind has the contact nodes, and the second has the surface; in three dimensions,
     the order does not matter.
     """
     damping: Quantity
-    """Damping c of one seat or node, in N s/m, or of the boundary per meter of its length, in N s/m^2. Default: in
-    a stack with constants per seat, the damping that follows from the restitution that the catalog gives for
-    the seats of the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given either.
-    Or: Damping d: ratio of the damping force to the elastic force, per unit of penetration rate. Default: must
-    be given, unless `restitution` and `reference_speed` are given.
+    """Damping c of one seat or node (in N s/m), or of one meter of boundary (in N s/m^2). Default: in a stack with
+    constants per seat, the damping that follows from the restitution that the catalog gives for the seats of
+    the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d:
+    ratio of the damping force to the elastic force, per unit of penetration rate. Default: must be given,
+    unless `restitution` and `reference_speed` are given.
     """
     friction: "FrictionFields"
     """Friction law, which gives the tangential force. Default: in a stack, Coulomb friction with the coefficient
@@ -308,9 +308,9 @@ class FreeInterfaceFields(TypedDict, total=False):
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
-    """Mass on one seat or node (kg), or per meter of boundary (kg/m), for which the restitution holds. Default:
-    for constants per seat, the mass that the catalog gives for the seats of the rack; for other constants,
-    there is no default, and the mass is required if `restitution` is given.
+    """Mass for which the restitution is stated: the mass on one seat or node (in kg), or on one meter of boundary
+    (in kg/m). Default: for constants per seat, the mass that the catalog gives for the seats of the rack; for
+    other constants, there is no default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
     """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: the restitution
@@ -318,18 +318,19 @@ class FreeInterfaceFields(TypedDict, total=False):
     `damping` is not given. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or
-    N/m^2, respectively; with the exponent 1.5, in N/m^1.5 or N/m^2.5. Default: in a stack with a linear law per
-    seat, the stiffness that the catalog gives for the seats of the rack; in a stack with a linear law per node,
-    9.8 kN/cm; in a stack with a rebound law per node, 5e8 N/m^1.5 between two racks or between a fallen rack
-    and the ground, and 1.2e9 N/m^1.5 between other bodies; there is no default otherwise.
+    """Stiffness k of one seat, of one node or of one meter of boundary. With a linear law, the unit is N/m for a
+    seat or node, and N/m^2 for a meter of boundary. With the exponent 1.5, the unit is N/m^1.5 for a seat or
+    node, and N/m^2.5 for a meter of boundary. Default: in a stack with a linear law per seat, the stiffness
+    that the catalog gives for the seats of the rack; in a stack with a linear law per node, 9.8 kN/cm; in a
+    stack with a rebound law per node, 5e8 N/m^1.5 between two racks or between a fallen rack and the ground,
+    and 1.2e9 N/m^1.5 between other bodies; there is no default otherwise.
     """
     within_groups: bool
     """True if the interface also acts between bodies of the same `group`. Default: true."""
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
     reference_speed: Quantity
-    """Impact speed for which the restitution holds. Default: required if `restitution` is given."""
+    """Impact speed for which the restitution is stated. Default: required if `restitution` is given."""
     speed: Quantity
     """Impact speed below which the contact damps in proportion to the speed, so that bodies come to rest. Default:
     0.1 m/s.
@@ -381,13 +382,13 @@ class ImpactFields(TypedDict, total=False):
     """The contact law of one pair of bodies that touch in impacts only."""
 
     basis: Literal["node", "length", "seat"]
-    """Unit for which stiffness and damping are stated: one contact node, or one meter of boundary. Default: node."""
+    """Stiffness and damping are stated per contact node (node) or per meter of boundary (length). Default: node."""
     damping: Quantity
-    """Damping c of one seat or node, in N s/m, or of the boundary per meter of its length, in N s/m^2. Default: in
-    a stack with constants per seat, the damping that follows from the restitution that the catalog gives for
-    the seats of the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given either.
-    Or: Damping d: ratio of the damping force to the elastic force, per unit of penetration rate. Default: must
-    be given, unless `restitution` and `reference_speed` are given.
+    """Damping c of one seat or node (in N s/m), or of one meter of boundary (in N s/m^2). Default: in a stack with
+    constants per seat, the damping that follows from the restitution that the catalog gives for the seats of
+    the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d:
+    ratio of the damping force to the elastic force, per unit of penetration rate. Default: must be given,
+    unless `restitution` and `reference_speed` are given.
     """
     friction: "FrictionFields"
     """Friction law, which gives the tangential force. Default: in a stack, Coulomb friction with the coefficient
@@ -395,9 +396,9 @@ class ImpactFields(TypedDict, total=False):
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
-    """Mass on one seat or node (kg), or per meter of boundary (kg/m), for which the restitution holds. Default:
-    for constants per seat, the mass that the catalog gives for the seats of the rack; for other constants,
-    there is no default, and the mass is required if `restitution` is given.
+    """Mass for which the restitution is stated: the mass on one seat or node (in kg), or on one meter of boundary
+    (in kg/m). Default: for constants per seat, the mass that the catalog gives for the seats of the rack; for
+    other constants, there is no default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
     """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: the restitution
@@ -405,16 +406,17 @@ class ImpactFields(TypedDict, total=False):
     `damping` is not given. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or
-    N/m^2, respectively; with the exponent 1.5, in N/m^1.5 or N/m^2.5. Default: in a stack with a linear law per
-    seat, the stiffness that the catalog gives for the seats of the rack; in a stack with a linear law per node,
-    9.8 kN/cm; in a stack with a rebound law per node, 5e8 N/m^1.5 between two racks or between a fallen rack
-    and the ground, and 1.2e9 N/m^1.5 between other bodies; there is no default otherwise.
+    """Stiffness k of one seat, of one node or of one meter of boundary. With a linear law, the unit is N/m for a
+    seat or node, and N/m^2 for a meter of boundary. With the exponent 1.5, the unit is N/m^1.5 for a seat or
+    node, and N/m^2.5 for a meter of boundary. Default: in a stack with a linear law per seat, the stiffness
+    that the catalog gives for the seats of the rack; in a stack with a linear law per node, 9.8 kN/cm; in a
+    stack with a rebound law per node, 5e8 N/m^1.5 between two racks or between a fallen rack and the ground,
+    and 1.2e9 N/m^1.5 between other bodies; there is no default otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
     reference_speed: Quantity
-    """Impact speed for which the restitution holds. Default: required if `restitution` is given."""
+    """Impact speed for which the restitution is stated. Default: required if `restitution` is given."""
     speed: Quantity
     """Impact speed below which the contact damps in proportion to the speed, so that bodies come to rest. Default:
     0.1 m/s.
@@ -464,16 +466,16 @@ class InterfaceFields(TypedDict, total=False):
     """The contact law of one pair of bodies."""
 
     basis: Literal["node", "length", "seat"]
-    """Unit for which stiffness and damping are stated: one seat (one rail on the crown of a barrel, one support of
-    a cradle, one end of a rail or one foot on the ground, or one post), one contact node, or one meter of
-    boundary. Default: seat.
+    """Stiffness and damping are stated per seat (seat), per contact node (node) or per meter of boundary (length).
+    A seat is one rail on the crown of a barrel, one support of a cradle, one end of a rail or one foot on the
+    ground, or one post. Default: seat.
     """
     damping: Quantity
-    """Damping c of one seat or node, in N s/m, or of the boundary per meter of its length, in N s/m^2. Default: in
-    a stack with constants per seat, the damping that follows from the restitution that the catalog gives for
-    the seats of the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given either.
-    Or: Damping d: ratio of the damping force to the elastic force, per unit of penetration rate. Default: must
-    be given, unless `restitution` and `reference_speed` are given.
+    """Damping c of one seat or node (in N s/m), or of one meter of boundary (in N s/m^2). Default: in a stack with
+    constants per seat, the damping that follows from the restitution that the catalog gives for the seats of
+    the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given either. Or: Damping d:
+    ratio of the damping force to the elastic force, per unit of penetration rate. Default: must be given,
+    unless `restitution` and `reference_speed` are given.
     """
     friction: "FrictionFields"
     """Friction law, which gives the tangential force. Default: in a stack, Coulomb friction with the coefficient
@@ -481,9 +483,9 @@ class InterfaceFields(TypedDict, total=False):
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
-    """Mass on one seat or node (kg), or per meter of boundary (kg/m), for which the restitution holds. Default:
-    for constants per seat, the mass that the catalog gives for the seats of the rack; for other constants,
-    there is no default, and the mass is required if `restitution` is given.
+    """Mass for which the restitution is stated: the mass on one seat or node (in kg), or on one meter of boundary
+    (in kg/m). Default: for constants per seat, the mass that the catalog gives for the seats of the rack; for
+    other constants, there is no default, and the mass is required if `restitution` is given.
     """
     restitution: Union[float, Quantity]
     """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: the restitution
@@ -491,16 +493,17 @@ class InterfaceFields(TypedDict, total=False):
     `damping` is not given. Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or
-    N/m^2, respectively; with the exponent 1.5, in N/m^1.5 or N/m^2.5. Default: in a stack with a linear law per
-    seat, the stiffness that the catalog gives for the seats of the rack; in a stack with a linear law per node,
-    9.8 kN/cm; in a stack with a rebound law per node, 5e8 N/m^1.5 between two racks or between a fallen rack
-    and the ground, and 1.2e9 N/m^1.5 between other bodies; there is no default otherwise.
+    """Stiffness k of one seat, of one node or of one meter of boundary. With a linear law, the unit is N/m for a
+    seat or node, and N/m^2 for a meter of boundary. With the exponent 1.5, the unit is N/m^1.5 for a seat or
+    node, and N/m^2.5 for a meter of boundary. Default: in a stack with a linear law per seat, the stiffness
+    that the catalog gives for the seats of the rack; in a stack with a linear law per node, 9.8 kN/cm; in a
+    stack with a rebound law per node, 5e8 N/m^1.5 between two racks or between a fallen rack and the ground,
+    and 1.2e9 N/m^1.5 between other bodies; there is no default otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
     reference_speed: Quantity
-    """Impact speed for which the restitution holds. Default: required if `restitution` is given."""
+    """Impact speed for which the restitution is stated. Default: required if `restitution` is given."""
     speed: Quantity
     """Impact speed below which the contact damps in proportion to the speed, so that bodies come to rest. Default:
     0.1 m/s.

@@ -187,7 +187,7 @@ fn read_sine(reader: Reader<'_>) -> Result<Sine, InputError> {
         .ok_or_else(|| reader.one_of(&["cycles", "duration"]))?;
     if cycles * period > LONGEST {
         let message = format!(
-            "{cycles} cycles of {period} s last longer than {LONGEST} s; take fewer cycles"
+            "{cycles} cycles of {period} s last longer than {LONGEST} s; use fewer cycles"
         );
         return Err(reader.inconsistent("cycles", message));
     }

@@ -25,7 +25,7 @@ pub(super) fn assemble(
 ) -> Result<Assembly, AssembleError> {
     if spec.columns_along.is_some() {
         return Err(AssembleError::Stack(
-            "the scenario has its stack in both planes, but this analysis works in only one plane: set stack.view to \
+            "the stack is modeled in both planes, but this analysis works in only one plane: set stack.view to \
              \"transverse\" (across the barrels) or to \"longitudinal\" (along them)"
                 .into(),
         ));

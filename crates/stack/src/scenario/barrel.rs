@@ -332,10 +332,12 @@ fn check(reader: &Reader<'_>, barrel: &Barrel) -> Result<(), ScenarioError> {
     }
     if 2.0 * barrel.stave_thickness >= barrel.head_diameter.min(barrel.length) {
         let message = format!(
-            "`{}` of {} m leaves no room in a head with a diameter of {} m",
+            "`{}` is {} m; twice the thickness must be less than the head diameter of {} m and less than the length of \
+             {} m, so that there is room for wine",
             path("stave_thickness"),
             barrel.stave_thickness,
-            barrel.head_diameter
+            barrel.head_diameter,
+            barrel.length
         );
         return Err(reader.inconsistent("stave_thickness", message));
     }
@@ -352,8 +354,8 @@ fn check(reader: &Reader<'_>, barrel: &Barrel) -> Result<(), ScenarioError> {
     }
     if barrel.mass < barrel.empty_mass {
         let message = format!(
-            "`{}` is {} kg, less than the {} kg of the empty barrel; raise it, since it includes the wine, or lower \
-             `{}` too",
+            "`{}` is {} kg, less than the {} kg of the empty barrel; raise this mass, which includes the wine, or \
+             lower `{}`",
             path("mass"),
             barrel.mass,
             barrel.empty_mass,

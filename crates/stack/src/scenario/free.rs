@@ -224,7 +224,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
         let refuse = reader.inconsistent(
             "shape",
             format!(
-                "with this body the scene has more than {MOST_NODES} contact nodes: take fewer bodies, or wider \
+                "with this body the scene has more than {MOST_NODES} contact nodes: use fewer bodies, or wider \
                  spacings of their nodes"
             ),
         );
@@ -346,8 +346,8 @@ fn read_interfaces(
         let turned = |known: &FreeInterface| known.between.iter().rev().eq(&between);
         if between.iter().all(whole) && interfaces.iter().any(turned) {
             let message = format!(
-                "the interface of \"{}\" with \"{}\" is already stated above, and the order of two kinds with exact or \
-                 rolling nodes does not matter; keep one of the two interfaces",
+                "the interface between \"{}\" and \"{}\" is already stated above in the other order; the order has no \
+                 effect, since both kinds have exact or rolling nodes: keep one of the two interfaces",
                 between[1], between[0]
             );
             return Err(reader.inconsistent("between", message));

@@ -80,8 +80,8 @@ fn kinds(entry: &Entry, sources: &Sources) -> Result<[bool; 2], ScenarioError> {
     let known = KINDS.iter().find(|(name, _)| entry.node.value == Value::Text((*name).to_owned()));
     known.map(|(_, drawn)| *drawn).ok_or_else(|| {
         let message = format!(
-            "`{FORMER}.{KIND}` is {}, but this former key has only the values \"both\", \"hair\" and \"ignorance\"; \
-             replace the key by `{FORMER}.drawn` and `{PRESENT}.drawn`, which are true or false",
+            "`{FORMER}.{KIND}` is {}; this key of earlier versions accepts only \"both\", \"hair\" and \"ignorance\": \
+             replace it by `{FORMER}.drawn` and `{PRESENT}.drawn`, which are true or false",
             entry.node.value.describe()
         );
         sources.error(entry.node.origin, Problem::Inconsistent { message })

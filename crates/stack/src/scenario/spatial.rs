@@ -76,7 +76,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
         let refuse = reader.inconsistent(
             "solid",
             format!(
-                "with this body the scene has more than {MOST_PAIRS} pairs of solids: take fewer bodies or parts"
+                "with this body the scene has more than {MOST_PAIRS} pairs of solids: use fewer bodies or parts"
             ),
         );
         let body = SpatialBody::checked(reader)?;

@@ -286,7 +286,7 @@ fn between_stops() -> Problem {
             match run_crossings(&mut scene, step, 1.0, |state| state.poses[1].position.x)?[..] {
                 [_, back, ..] => Ok(back),
                 _ => Err(Failure::Absent(
-                    "the weight does not return to the middle of the stops".into(),
+                    "the weight does not return to the middle between the stops".into(),
                 )),
             }
         })

@@ -44,7 +44,8 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
         Some(out) => return table(args, out),
         None if args.input.has_folder() => {
             bail!(
-                "the measures of a folder, or of an archive of several records, are written as a table: give a folder for the table with --out DIR"
+                "the input is a folder or an archive of several records, whose measures are written to a table: \
+                 state the folder of this table with --out DIR"
             )
         }
         None => args.folder.tables.need(false)?,

@@ -50,7 +50,7 @@ pub(super) fn refuse(
         {
             return Err(source.damaged(
                 line,
-                "values and units without a factor",
+                "values that are already multiplied by any factor",
                 format!("{}, a factor of all values below", quoted(&source.text(line))),
                 "multiply the values by the factor, unless they already contain the factor, and remove the factor",
             ));

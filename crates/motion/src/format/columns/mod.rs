@@ -426,8 +426,8 @@ fn require_duration(
     Err(source.error(
         line,
         refusal,
-        format!("samples that last {stated} s, as stated here"),
-        format!("{samples} samples that last {length:.4} s at a step of {time_step} s"),
+        format!("a total duration of {stated} s, as stated here"),
+        format!("a total duration of {length:.4} s: {samples} samples at a step of {time_step} s"),
         remedy,
     ))
 }
@@ -518,7 +518,7 @@ fn units(
             if let Some(name) = name.filter(|name| factors::has_factor(&name.label, "*")) {
                 return Err(source.damaged(
                     names_line,
-                    "values and units without a factor",
+                    "a column name without a factor",
                     format!("{}, a name with a factor", quoted(&name.label)),
                     "multiply the values by the factor, unless they already contain the factor, and write the name \
                      without the factor",
@@ -544,7 +544,7 @@ fn units(
             {
                 return Err(source.damaged(
                     names_line,
-                    "values and units without a factor",
+                    "a unit without a factor",
                     format!("{}, a unit with a factor", quoted(word)),
                     "multiply the values by the factor, and write the unit without the factor",
                 ));

@@ -43,15 +43,16 @@ const BASIS: Field = Field::new(
     "basis",
     Kind::Choice(names::<Basis>),
     Default::Value("\"node\""),
-    "Unit for which stiffness and damping are stated: one contact node, or one meter of boundary.",
+    "Stiffness and damping are stated per contact node (node) or per meter of boundary (length).",
 );
 
 const SEAT_BASIS: Field = Field::new(
     "basis",
     Kind::Choice(names::<Basis>),
     Default::Value("\"seat\""),
-    "Unit for which stiffness and damping are stated: one seat (one rail on the crown of a barrel, one support of a cradle, \
-     one end of a rail or one foot on the ground, or one post), one contact node, or one meter of boundary.",
+    "Stiffness and damping are stated per seat (seat), per contact node (node) or per meter of boundary (length). A \
+     seat is one rail on the crown of a barrel, one support of a cradle, one end of a rail or one foot on the ground, \
+     or one post.",
 );
 
 const STIFFNESS: Field = Field::new(
@@ -71,8 +72,9 @@ const STIFFNESS: Field = Field::new(
          racks or between a fallen rack and the ground, and 1.2e9 N/m^1.5 between other bodies; there is no default \
          otherwise",
     ),
-    "Stiffness k of one seat or node, or of the boundary per meter of its length: with a linear law, in N/m or N/m^2, \
-     respectively; with the exponent 1.5, in N/m^1.5 or N/m^2.5.",
+    "Stiffness k of one seat, of one node or of one meter of boundary. With a linear law, the unit is N/m for a seat \
+     or node, and N/m^2 for a meter of boundary. With the exponent 1.5, the unit is N/m^1.5 for a seat or node, and \
+     N/m^2.5 for a meter of boundary.",
 );
 
 const FRICTION_FIELD: Field = Field::new(
@@ -103,7 +105,7 @@ const LINEAR: &[Field] = &[
              for the seats of the rack; in a stack with constants per node, 22 N s/cm if the stiffness is not given \
              either",
         ),
-        "Damping c of one seat or node, in N s/m, or of the boundary per meter of its length, in N s/m^2.",
+        "Damping c of one seat or node (in N s/m), or of one meter of boundary (in N s/m^2).",
     ),
     RESTITUTION,
     Field::new(
@@ -113,7 +115,8 @@ const LINEAR: &[Field] = &[
             "for constants per seat, the mass that the catalog gives for the seats of the rack; for other constants, \
              there is no default, and the mass is required if `restitution` is given",
         ),
-        "Mass on one seat or node (kg), or per meter of boundary (kg/m), for which the restitution holds.",
+        "Mass for which the restitution is stated: the mass on one seat or node (in kg), or on one meter of boundary \
+         (in kg/m).",
     ),
 ];
 
@@ -153,7 +156,7 @@ const LAWS: Variants = Variants {
                     "reference_speed",
                     Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE),
                     Default::Derived("required if `restitution` is given"),
-                    "Impact speed for which the restitution holds.",
+                    "Impact speed for which the restitution is stated.",
                 ),
             ],
         },
