@@ -78,9 +78,8 @@ pub fn stiffness(
         ));
     }
     if half > slope {
-        warnings.push(
-            "the interval of k reaches zero: apply higher loads, or add measurements".into(),
-        );
+        warnings
+            .push("the interval of k reaches zero: apply higher loads, or add measurements".into());
     }
     let scatter = (found.squares / found.freedom as f64).sqrt();
     let facts = vec![

@@ -278,7 +278,10 @@ fn what_was_not_run_is_listed_with_its_reason() {
     let three = [layouts[0].clone(), layouts[1].clone(), third];
     let found = compared(&three, Vec::new(), vec![not]);
     let said = words::sentences(&found).join(" ");
-    assert!(said.contains("The layout \"one level less\" was not run, because it does not fit."), "{said}");
+    assert!(
+        said.contains("The layout \"one level less\" was not run, because it does not fit."),
+        "{said}"
+    );
     assert!(said.contains("of all these differences jointly"), "{said}");
     let lines = table(&found).to_lines();
     assert_eq!(lines.len(), 5);

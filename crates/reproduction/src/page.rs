@@ -234,8 +234,9 @@ fn stand_in(results: &Results) -> String {
     };
     format!(
         "This is not the paper's motion, so the results cannot be compared with the paper's numbers. The six \
-         barrels were run under {}. With μ = 0.4, the outcome is “{}” and the residual slip is {} cm. With μ = 0.1, \
-         the outcome is “{}” and the residual slip is {} cm.",
+         barrels were run under {}. With a friction coefficient of 0.4 between rack and ground, the outcome is “{}” \
+         and the residual slip is {} cm. With a friction coefficient of 0.1 between rack and ground, the outcome is \
+         “{}” and the residual slip is {} cm.",
         results.motion.name(),
         what(six),
         slip(six),

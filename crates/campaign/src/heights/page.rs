@@ -240,7 +240,11 @@ fn over_constants_table(all: &Heights) -> Table {
         format!(
             "95 % range of the chance of collapse as the uncertain constants of the seats vary, and the constant on \
              which this chance depends most.{}",
-            in_planes(all, " Of both directions, the cell shows the direction with the higher upper end.", "")
+            in_planes(
+                all,
+                " Of both directions, the cell shows the direction with the higher upper end.",
+                ""
+            )
         ),
         |levels, velocity| {
             Cell::maybe(widest(all, levels, velocity).map(|(height, _, [from, to])| {
@@ -352,7 +356,11 @@ fn blocks(all: &Heights) -> Vec<Block> {
              end with 95 % confidence. ✓ low: a share of at most {:.0} %, and an upper end of at most {:.0} %. If the \
              chance of collapse of a stack is above {:.0} %, at most one of 20 studies rates the stack low. ! medium: \
              a share of at most {:.0} %. ✗ high: all other results. These limits were chosen by judgment.",
-            in_planes(all, "Of both directions, the cell shows the direction with the higher upper end. ", ""),
+            in_planes(
+                all,
+                "Of both directions, the cell shows the direction with the higher upper end. ",
+                ""
+            ),
             100.0 * LOW.0,
             100.0 * LOW.1,
             100.0 * LOW.1,

@@ -186,9 +186,8 @@ fn read_sine(reader: Reader<'_>) -> Result<Sine, InputError> {
         .or(duration.map(|duration| duration / period))
         .ok_or_else(|| reader.one_of(&["cycles", "duration"]))?;
     if cycles * period > LONGEST {
-        let message = format!(
-            "{cycles} cycles of {period} s last longer than {LONGEST} s; use fewer cycles"
-        );
+        let message =
+            format!("{cycles} cycles of {period} s last longer than {LONGEST} s; use fewer cycles");
         return Err(reader.inconsistent("cycles", message));
     }
     let ramp_cycles = reader.number("ramp_cycles")?;

@@ -50,7 +50,7 @@ pub(super) fn refuse(
         {
             return Err(source.damaged(
                 line,
-                "values that are already multiplied by any factor",
+                "values that need not be multiplied by a factor",
                 format!("{}, a factor of all values below", quoted(&source.text(line))),
                 "multiply the values by the factor, unless they already contain the factor, and remove the factor",
             ));
