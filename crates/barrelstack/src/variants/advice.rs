@@ -67,8 +67,9 @@ impl Remedy {
         )
     }
 
-    /// If a lower stack suffices, states which of the changes that were tried would not have been enough: the numbers
-    /// of levels above that of this stack, and the straps if no straps suffice. Empty if there are no such changes.
+    /// If a lower stack suffices, names the changes that were tried and would not have been enough. These changes are
+    /// stacks with more levels than the sufficient stack. If none of the pretensions of straps suffices, straps are
+    /// named too. Empty if there are no such changes.
     fn not_enough(&self) -> String {
         let Some(height) = &self.height else { return String::new() };
         let higher = self

@@ -45,12 +45,12 @@ described! {
         pub height: Option<Tried>,
         /// The loosest straps that suffice; null if none of the pretensions that were tried suffices.
         pub straps: Option<Tried>,
-        /// Share of the random draws of the uncertain constants in which fewer stacks fail with the change in `height`
-        /// than with the change in `straps`; a draw with equal shares counts as one half. Null if `height` or `straps`
-        /// is null, or if the `range` of either is null.
+        /// Share of the random draws of the uncertain constants in which the lower stack (field `height`) fails less
+        /// often than the strapped stack (field `straps`). A draw in which both stacks fail equally often counts as one
+        /// half. Null if `height` or `straps` is null, or if the `range` of one of them is null.
         pub height_before_straps: Option<f64> as "1",
-        /// Number of changes that the search may try, each in every plane. The confidence level of the intervals
-        /// applies to all these changes jointly.
+        /// Number of changes that the search may try. A change counts once, even if it is tried in two planes. The
+        /// intervals of all these changes in all planes hold simultaneously with 95 % confidence.
         pub candidates: u32,
         /// Number of variants that are run with a change, unless the change is rejected earlier.
         pub variants: u32,
@@ -74,11 +74,12 @@ described! {
         pub pretension: Option<f64> as "N",
         /// The change as overrides of the scenario.
         pub changes: Vec<String>,
-        /// True if enough variants stand; false if too many variants fail. Null if this is not known, because not all
-        /// variants were run: looser straps suffice, or the search was stopped.
+        /// True if enough variants stand with the change; false if too many variants fail. Null if the variants that
+        /// were run do not decide this. The other variants are not run if straps with a smaller pretension suffice, or
+        /// if the search is stopped.
         pub suffices: Option<bool>,
-        /// Number of variants counted. Not all variants are counted if the change was rejected early or if `suffices` is
-        /// null. Variants that are likely to fall are run first.
+        /// Number of variants counted. Not all variants are counted if the change was rejected early, or if `suffices`
+        /// is null. Variants that are likely to fall are run first.
         pub variants: u32,
         /// Number of counted variants that collapse or have no verdict, in the plane with the
         /// largest such number.

@@ -9,9 +9,9 @@
 //! rejected. The failure share of a rejected change is unknown, since the counted variants are a biased sample.
 //!
 //! If looser straps suffice, a pretension that was not rejected after its first block is not run further; it is then
-//! unknown whether this pretension suffices. If all variants of a change were counted, its failure share has a confidence interval. These intervals
-//! hold simultaneously for all changes and planes of the search (Bonferroni), so choosing among the changes does not
-//! invalidate them.
+//! unknown whether this pretension suffices. If all variants of a change were counted, its failure share has a
+//! confidence interval. These intervals hold simultaneously for all changes and planes of the search (Bonferroni), so
+//! choosing among the changes does not invalidate them.
 
 use std::cmp::Reverse;
 use std::ops::{ControlFlow, Range};

@@ -122,8 +122,8 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
         None => Ok(ExitCode::SUCCESS),
         Some(words) => {
             printer::warning(&format!(
-                "the target is missed {words}; --accept-misfit accepts this misfit, so the command ends with the \
-                 exit status {NEAR}"
+                "the target is missed {words}; the motion was written nevertheless, because --accept-misfit is set; \
+                 the exit status is {NEAR}"
             ));
             Ok(ExitCode::from(NEAR))
         }
