@@ -1,7 +1,7 @@
 //! The steps of `cargo xtask test`, run in order.
 //!
-//! A failed check of the sources ends the run, since it is quickly mended. After failed tests, the other tests are still
-//! run, so that one run reports all failures.
+//! If a check of the sources (format, lints, documentation) fails, no further step is run, since such errors can be
+//! corrected quickly. If tests fail, the other steps are still run, so that one run reports all failed tests.
 
 use std::ffi::OsString;
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -76,11 +76,11 @@ const STEPS: [Step; 5] = [
 /// Tests of unsafe code that Miri can run.
 const MIRI: [&[&str]; 1] = [&["--package", "barrelstack-dynamics", "--lib", "lanes::"]];
 
-/// Runs all steps and prints the numbers of tests that passed, failed and were skipped on the last line.
+/// Runs all steps. At the end, prints how many tests passed, how many failed and how many were skipped.
 ///
 /// # Errors
 ///
-/// Returns the first failed check of the sources, or else a list of all steps that failed.
+/// If a check of the sources fails, the error names this check. Otherwise, the error lists all steps that failed.
 pub(crate) fn test() -> anyhow::Result<()> {
     let root = root();
     let start = Instant::now();
@@ -126,7 +126,7 @@ pub(crate) fn test() -> anyhow::Result<()> {
     bail!("{} failed:\n  {}", steps_of(report.failures.len()), report.failures.join("\n  "))
 }
 
-/// Returns a number with the noun, such as "2 steps".
+/// Returns a number of steps as text, such as "1 step" or "2 steps".
 fn steps_of(count: usize) -> String {
     format!("{count} step{}", if count == 1 { "" } else { "s" })
 }
@@ -134,7 +134,7 @@ fn steps_of(count: usize) -> String {
 /// Results of the steps that were run.
 #[derive(Default)]
 struct Report {
-    /// Numbers of tests in all steps.
+    /// Numbers of tests that passed, failed and were skipped, each added up over all steps.
     total: Tally,
     /// A line for each step, with its counts and its time.
     closing: Vec<String>,

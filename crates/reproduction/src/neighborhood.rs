@@ -25,7 +25,7 @@ const QUESTIONS: [&str; 5] = [
     "eight barrels: drift within 4 to 7 %",
     "six barrels: both upper levels fall by rocking after 8.5 to 12 s",
     "along the barrels: the rack of the second level slides off first",
-    "along the barrels: this rack slides off after 3 to 6 s",
+    "along the barrels: the first body leaves its seat after 3 to 6 s",
 ];
 
 /// For each finding, `true` if a sample reproduces it; `None` if the finding needs the paper's

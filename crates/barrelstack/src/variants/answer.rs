@@ -248,16 +248,19 @@ const FIRST: u32 = 8;
 pub type RunCases<'a, R, E> = dyn Fn(&[u32], RunCounter<'_>) -> Result<R, E> + 'a;
 
 /// Runs the nominal case and the variants with the lowest numbers, reports their verdict, and then runs all other
-/// variants. Returns the results of both parts; `None` for the second part if all cases were run at once, because fewer
-/// variants would follow the first verdict than it has.
+/// variants. Returns the results of the first part, up to the verdict, and of the second part, all other variants.
 ///
-/// The variants that finish first would be a biased sample for the first verdict, because runs that collapse end early.
+/// If the second part would have fewer variants than the first part, all cases are run at once: the results of the
+/// second part are then `None`, and no first verdict is reported.
 ///
-/// `numbers` starts with the nominal case. `run` runs every case in the given number of planes. `headline` states the
-/// verdict on the results of the first part; `None` if some of these are unfinished.
+/// The first part consists of the variants with the lowest numbers, not of the variants that finish first. The latter
+/// would be a biased sample, because runs that collapse end early.
+///
+/// `numbers` starts with the nominal case. `run` runs every case in the given number of planes. `headline` returns the
+/// verdict on the results of the first part, or `None` if a case of the first part is unfinished.
 ///
 /// # Errors
-/// The errors of `run`.
+/// Returns the errors of `run`.
 pub fn run_with_first_verdict<R, E>(
     (numbers, planes): (&[u32], usize),
     run: &RunCases<'_, R, E>,

@@ -346,8 +346,9 @@ fn read_interfaces(
         let turned = |known: &FreeInterface| known.between.iter().rev().eq(&between);
         if between.iter().all(whole) && interfaces.iter().any(turned) {
             let message = format!(
-                "the interface between \"{}\" and \"{}\" is already stated above in the other order; the order has no \
-                 effect, since both kinds have exact or rolling nodes: keep one of the two interfaces",
+                "the interface between \"{}\" and \"{}\" is stated twice, once in each order of the two kinds; the \
+                 order has no effect, since the contact nodes of both kinds are \"exact\" or \"rolling\": keep one of \
+                 the two interfaces",
                 between[1], between[0]
             );
             return Err(reader.inconsistent("between", message));
