@@ -59,8 +59,8 @@ const STEPS: [Step; 5] = [
         remedy: "see the failed tests above; they are listed again at the end of the step",
     },
     Step {
-        // `barrelstack-web` is selected, too, as in the build of its example `page`, so that both builds have the same
-        // features and share their dependencies.
+        // `barrelstack-web` is selected, too, as in the build of its example `page`, so that this build and
+        // the build of the page have the same features and share their dependencies.
         arguments: &[
             "test",
             "--release",
@@ -136,9 +136,9 @@ fn steps_of(count: usize) -> String {
 struct Report {
     /// Numbers of tests that passed, failed and were skipped, each added up over all steps.
     total: Tally,
-    /// A line for each step, with its counts and its time.
+    /// For each step that was run or skipped, a line with its result, such as the numbers of tests.
     closing: Vec<String>,
-    /// The name of each failed step, and advice.
+    /// For each failed step, its name and advice.
     failures: Vec<String>,
 }
 
@@ -238,7 +238,7 @@ pub(crate) fn miri() -> anyhow::Result<()> {
             command.env_remove(name);
         }
         command.env("MIRIFLAGS", "-Zmiri-disable-isolation");
-        // Without AVX2, Miri would not execute any code of vector units.
+        // With this flag, Miri supports AVX2; without AVX2, the AVX2 operations would not be executed.
         command.env("RUSTFLAGS", "-C target-cpu=x86-64-v3");
         if !command.status().context("cannot start cargo")?.success() {
             bail!("Miri failed, or is missing: `rustup +nightly component add miri rust-src`");
@@ -309,7 +309,8 @@ pub(crate) fn target(root: &Path) -> PathBuf {
 
 /// Builds the program in the release profile.
 ///
-/// The Python package is selected, too, so that both have the same features and their dependencies are compiled once.
+/// The Python package is selected, too, so that the program and the package are built with the same features of their
+/// dependencies, and each dependency is compiled only once.
 pub(crate) fn build_program(root: &Path) -> anyhow::Result<()> {
     let packages = ["--package=barrelstack", "--package=barrelstack-python", "--bin=barrelstack"];
     let mut build = Command::new(cargo());
@@ -341,7 +342,7 @@ mod tests {
     use super::{Command, Report, cargo, root};
     use crate::lines::{entries, sources};
 
-    /// A failed step must not hide the results of the steps after it, nor be forgotten.
+    /// After a failed step, later steps must still be run, and the failure must be reported at the end.
     #[test]
     fn steps_after_a_failed_step_are_run() {
         let mut report = Report::default();

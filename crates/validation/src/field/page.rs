@@ -216,10 +216,11 @@ fn posterior(text: &mut String, results: &Results) {
     }
     text.push_str("\nThe column “factor on the motion” gives the factor by which the motion is multiplied. In the row \
                    “maule”, this is the motion at Curicó.\nThe effective number of draws is (Σ L)² / Σ L²; if the \
-                   likelihood L were the same for all draws, this number would equal the total number of draws.\n\n![Share of barrels on the floor \
-                   against friction, and friction before and after the observations](field.svg)\n\nEach of the next \
-                   tables gives the likelihood of each statement for several ranges of one unknown, averaged over all \
-                   other unknowns (the largest possible likelihood is 1):\n\n");
+                   likelihood L were the same for all draws, this number would equal the total number of draws.\n\n\
+                   ![Share of barrels on the floor against friction, and friction before and after the \
+                   observations](field.svg)\n\nEach of the next tables gives the likelihood of each statement for \
+                   several ranges of one unknown, averaged over all other unknowns (the largest possible \
+                   likelihood is 1):\n\n");
     let edges: [(usize, &str, &[f64]); 3] = [
         (0, "friction barrel–rack", &FRICTION),
         (1, "friction rack–ground", &GROUND),
