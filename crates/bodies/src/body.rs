@@ -111,8 +111,9 @@ impl SpatialBody {
             let most = x.max(y).max(z);
             if x.min(y).min(z) <= 0.0 || most > (x + y + z - most) * (1.0 + 1e-9) {
                 let message = format!(
-                    "no rigid body has moments of inertia of {x}, {y} and {z} kg·m²: each must be above zero, and \
-                     none may exceed the sum of the other two; correct them"
+                    "`{}` is {x}, {y} and {z} kg m^2, which no rigid body can have: each moment of inertia must be \
+                     above zero, and none may exceed the sum of the other two; correct the three values",
+                    reader.path_of("inertia")
                 );
                 return wrong("inertia", message);
             }

@@ -15,6 +15,7 @@ use barrelstack::run::RunFailure;
 use barrelstack::scenario::Scenario;
 use barrelstack_dynamics::math;
 use barrelstack_input::measured::TableError;
+use barrelstack_input::names::advice;
 use barrelstack_motion::Random;
 
 use self::ensemble::{Built, Course, Shaking, placed, simulate};
@@ -308,10 +309,11 @@ fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), Cali
     let named = observed.falls.iter().map(|(barrel, _)| barrel).chain(&observed.first_barrel);
     for barrel in named {
         if !barrels.contains(barrel) {
+            let known: Vec<&str> = barrels.iter().map(String::as_str).collect();
             return Err(CalibrateError::Scenario(format!(
-                "test {}: the scenario has no barrel \"{barrel}\"; it has {}",
+                "test {}: the scenario has no barrel \"{barrel}\"; {}",
                 at + 1,
-                barrels.join(", ")
+                advice(barrel, &known)
             )));
         }
     }

@@ -212,11 +212,11 @@ impl Heights {
 /// Reason why a study of safe heights fails.
 #[derive(Debug, thiserror::Error)]
 pub enum HeightsError {
-    /// The rack is not in the catalog. The strings are its name and a list of the known racks.
-    #[error("there is no rack `{0}`; use one of {1}")]
+    /// The rack is not in the catalog. The strings are its name and the advice to name another rack.
+    #[error("there is no rack `{0}`; {1}")]
     Rack(String, String),
-    /// The barrel is not in the catalog. The strings are its name and a list of the known barrels.
-    #[error("there is no barrel `{0}`; use one of {1}")]
+    /// The barrel is not in the catalog. The strings are its name and the advice to name another barrel.
+    #[error("there is no barrel `{0}`; {1}")]
     Barrel(String, String),
     /// The highest stack has too few levels, or too many.
     #[error("the highest stack cannot have {0} levels; state {LOWEST} to {HIGHEST}")]

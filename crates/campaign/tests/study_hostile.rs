@@ -123,7 +123,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     (
         2,
         "[[factor]]\nfield = \"interface.rack-ground.friction.coefficient\"\ndistribution = { kind = \"discrete\", values = [0.3, 0.4], weights = [1] } # HERE\n",
-        &["2 values, and 1 weights"],
+        &["weights` has 1 weight for 2 values; give one weight per value"],
     ),
     (
         2,

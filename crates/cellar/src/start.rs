@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use barrelstack::scenario::Dimension;
 use barrelstack::scenario::error::ScenarioError;
 use barrelstack::scenario::field::{Default, Kind, Range};
-use barrelstack::scenario::reader::{Reader, nearest};
+use barrelstack::scenario::reader::Reader;
 use barrelstack::scenario::template::Host;
 use barrelstack::scenario::tree::Table;
 use barrelstack_dynamics::math;
 use barrelstack_input::declared::Declared as _;
+use barrelstack_input::names::advice;
 use barrelstack_input::writer::Writer;
 use barrelstack_input::{FileRef, InputError, section, table};
 
@@ -167,15 +168,6 @@ fn own_shift(standing: &Standing, body: Option<usize>, [x, y, z]: [f64; 3], turn
     Shift { body, by: [cos * x + sin * y, cos * y - sin * x, z], turn }
 }
 
-/// Returns the end of an error message about an unknown name. It suggests the most similar valid name; if none is
-/// similar, it states the first and the last valid name.
-fn valid(word: &str, known: &[&str]) -> String {
-    match nearest(word, known) {
-        Some(near) => format!("did you mean \"{near}\"?"),
-        None => format!("the names are \"{}\" to \"{}\"", known[0], known[known.len() - 1]),
-    }
-}
-
 fn stack_named<'a>(
     name: &str,
     stacks: &'a [Standing],
@@ -185,14 +177,15 @@ fn stack_named<'a>(
         return Ok((standing, &models[standing.model]));
     }
     let known: Vec<&str> = stacks.iter().map(|standing| standing.name.as_str()).collect();
-    Err(format!("there is no stack \"{name}\"; {}", valid(name, &known)))
+    Err(format!("there is no stack \"{name}\"; {}", advice(name, &known)))
 }
 
 fn body_named(name: &str, stack: &str, model: &Model) -> Result<usize, String> {
     let known: Vec<&str> = model.stack.parts[1..].iter().map(|part| part.name.as_str()).collect();
     let found = known.iter().position(|known| *known == name);
-    found
-        .ok_or_else(|| format!("stack \"{stack}\" has no body \"{name}\"; {}", valid(name, &known)))
+    found.ok_or_else(|| {
+        format!("stack \"{stack}\" has no body \"{name}\"; {}", advice(name, &known))
+    })
 }
 
 /// Names of the columns that state a pose in a CSV file.
@@ -224,8 +217,8 @@ impl Columns {
             ["stack", "body"].contains(&name) || POSE.contains(&name) || SHIFTED.contains(&name)
         };
         if let Some(unknown) = names.iter().find(|name| !known(name)) {
-            let all = format!("stack, body, {} or {}", SHIFTED.join(", "), POSE.join(", "));
-            return Err(format!("unknown column \"{unknown}\"; the columns are {all}"));
+            let all: Vec<&str> = ["stack", "body"].into_iter().chain(SHIFTED).chain(POSE).collect();
+            return Err(format!("unknown column \"{unknown}\": {}", advice(unknown, &all)));
         }
         if !has("stack") {
             return Err(

@@ -7,6 +7,7 @@ use barrelstack_cellar::kept::Part;
 use clap::{Parser, Subcommand};
 
 use crate::language::LanguageArgs;
+use crate::number::whole;
 
 /// Text at the end of the help of the program.
 const AFTER_HELP: &str = "\
@@ -97,10 +98,10 @@ pub(crate) struct ScenarioArgs {
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub(crate) struct VariantArgs {
     /// Number of variants to run, in place of imperfections.variants; 0 runs only the stack, or the cellar, as stated.
-    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = whole(0_u32..=4096))]
     pub(crate) variants: Option<u32>,
     /// Number of the variant to show, in place of the most typical one; 0 shows the stack, or the cellar, as stated.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = whole(0..=u32::MAX))]
     pub(crate) variant: Option<u32>,
 }
 

@@ -2,6 +2,7 @@
 
 use barrelstack_report::{Format, Paper};
 
+use crate::number::real;
 use crate::typed::typed;
 
 /// Formats of figures besides SVG.
@@ -11,7 +12,7 @@ pub(crate) struct FigureArgs {
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Vec<FormatName>,
     /// Resolution (dots per inch) of figures in PNG.
-    #[arg(long, value_name = "DPI", default_value = "200", value_parser = dpi)]
+    #[arg(long, value_name = "DPI", default_value = "200", allow_negative_numbers = true, value_parser = real("a number of dots per inch from 20 to 1200, such as 300", |number| (20.0..=1200.0).contains(&number)))]
     pub(crate) dpi: f64,
 }
 
@@ -50,12 +51,5 @@ typed! {
         A4 = Self::A4,
         /// 8½ by 11 inches.
         Letter = Self::Letter,
-    }
-}
-
-fn dpi(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(dpi) if (20.0..=1200.0).contains(&dpi) => Ok(dpi),
-        _ => Err("expected a number of dots per inch from 20 to 1200, such as 300".into()),
     }
 }

@@ -70,7 +70,9 @@ impl std::str::FromStr for StopPoint {
             (Ok(work), Ok(done)) if !things.is_empty() => {
                 Ok(Self { work, things: things.to_owned(), done })
             }
-            _ => Err("expected WORK:THINGS:DONE, such as 2:runs:3".to_owned()),
+            _ => Err("expected the number of a task, the things that it counts, and how many of them are done, \
+                      separated by colons, such as 2:runs:3"
+                .to_owned()),
         }
     }
 }

@@ -9,6 +9,7 @@ mod figures;
 mod interrupt;
 mod lanes;
 mod language;
+mod number;
 mod printer;
 mod process;
 mod progress;
@@ -31,7 +32,7 @@ fn main() -> ExitCode {
         // Arguments may contain any characters, so the message is printed through the escaping
         // printer.
         Err(error) if error.use_stderr() => {
-            printer::usage(&in_plain_words(&error.render().to_string()), json);
+            printer::usage(&error.render().to_string(), json);
             return ExitCode::from(2);
         }
         Err(help) => {
@@ -70,15 +71,4 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
-}
-
-/// Replaces the message of the standard library about text that is not a number.
-fn in_plain_words(message: &str) -> String {
-    const WORDS: [(&str, &str); 4] = [
-        (": invalid float literal", ": expected a number"),
-        (": cannot parse float from empty string", ": expected a number"),
-        (": invalid digit found in string", ": expected a whole number"),
-        (": cannot parse integer from empty string", ": expected a whole number"),
-    ];
-    WORDS.iter().fold(message.to_owned(), |message, (said, plain)| message.replace(said, plain))
 }

@@ -7,7 +7,7 @@ use barrelstack::compare::CompareError;
 use barrelstack::export::ExportError;
 use barrelstack::ground::GroundError;
 use barrelstack_campaign::study::StudyError;
-use barrelstack_motion::{MotionError, Refusal};
+use barrelstack_motion::{MotionError, ReadError, Refusal};
 
 /// Returns the advice to print after an error; `None` if there is no advice for this error.
 pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
@@ -37,8 +37,16 @@ pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
                 "`barrelstack motion convert` with --unit, --time-step or --sensitivity writes a copy of the file that states the missing information",
             );
         }
+        if let Some(read) = cause.downcast_ref() {
+            return of_reading(read);
+        }
         cause.downcast_ref().and_then(of_ground)
     })
+}
+
+fn of_reading(error: &ReadError) -> Option<&'static str> {
+    (error.refusal == Refusal::Unrecognized)
+        .then_some("`barrelstack motion --help` lists all formats")
 }
 
 fn of_ground(error: &GroundError) -> Option<&'static str> {
@@ -47,8 +55,8 @@ fn of_ground(error: &GroundError) -> Option<&'static str> {
         GroundError::Motion(MotionError::NoChannel { .. }) => Some(
             "select a horizontal component with --set motion.component=NAME; a vertical component alone does not shake the stack sideways",
         ),
-        GroundError::Read(_)
-        | GroundError::Motion(_)
+        GroundError::Read(read) => of_reading(read),
+        GroundError::Motion(_)
         | GroundError::Vertical { .. }
         | GroundError::UnknownBundled { .. }
         | GroundError::Unit { .. } => None,

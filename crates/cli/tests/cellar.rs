@@ -304,7 +304,10 @@ fn an_aftershock_is_answered_in_one_sentence() {
     assert!((pga(1) / pga(0) - 0.4).abs() < 1e-9);
     assert!(out.join("shocks.csv").is_file());
     for (arguments, words) in [
-        (&["aftershock", "demo-cellar", "--scale=-1"][..], "--scale -1: expected a factor above 0"),
+        (
+            &["aftershock", "demo-cellar", "--scale=-1"][..],
+            "'-1' for '--scale <FACTOR>': expected a factor above 0",
+        ),
         (&["aftershock", "demo-cellar", "--scale=nan"], "expected a factor above 0"),
         (&["aftershock", "demo-cellar", "--scale=0.5,0.5"], "0.5 is given twice"),
         (

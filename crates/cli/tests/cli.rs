@@ -49,13 +49,19 @@ fn timeless(text: &str) -> Vec<String> {
 #[test]
 fn an_option_that_is_no_number_is_refused_in_plain_words() {
     for (arguments, said) in [
-        (["protect", "--budget=lots"], "'lots' for '--budget <NUMBER>': expected a number\n"),
-        (["heights", "--seed=a"], "'a' for '--seed <NUMBER>': expected a whole number\n"),
-        (["run", "--variants="], "'' for '--variants <NUMBER>': "),
+        (
+            ["protect", "--budget=lots"],
+            "'lots' for '--budget <NUMBER>': expected an amount in US$ of 0 or more",
+        ),
+        (["heights", "--seed=a"], "'a' for '--seed <NUMBER>': expected a whole number from 0 to"),
+        (
+            ["run", "--variants="],
+            "'' for '--variants <NUMBER>': expected a whole number from 0 to 4096\n",
+        ),
         // Another name of the option is understood.
         (
             ["heights", "--levels=many"],
-            "'many' for '--highest <LEVELS>': expected a whole number\n",
+            "'many' for '--highest <LEVELS>': expected a whole number from 2 to 6\n",
         ),
     ] {
         let output = barrelstack(arguments);

@@ -280,7 +280,7 @@ fn studies_beyond_all_memory_are_refused_at_the_field_before_their_cases_are_mad
             pairs[..3].iter().map(|pair| range(pair, 10_000)).collect::<String>()
                 + "[design]\nkind = \"sobol\"\ncount = 8\n",
             "range",
-            "more than 20000 values together: use fewer",
+            "more than 20000 values in total: give this factor fewer values",
         ),
         (
             pairs.iter().map(|pair| drawn(pair)).collect::<String>()

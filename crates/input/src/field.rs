@@ -198,9 +198,27 @@ impl Field {
             format!("a table `{}`", self.name)
         } else if let Kind::Tables(_) = self.kind {
             format!("a table `[[{}]]`", self.name)
+        } else if let Default::Value(text) = self.default {
+            format!("`{} = {text}`", self.name)
         } else {
             format!("`{} = {}`", self.name, self.kind.example())
         }
+    }
+}
+
+/// Returns a quantity of a dimension as a user would write it. A length with a high limit, such as that of a room, has a
+/// longer example than that of a barrel: a hundredth of the limit. A time that may be long is not as short as a step.
+pub(crate) fn example_in(dimension: Dimension, range: Range) -> String {
+    let large = (100.0..VAST).contains(&range.greatest);
+    // A lower limit above zero belongs to lengths of bodies.
+    let long = large && range.above && range.least == 0.0;
+    match (dimension, range.greatest / 100.0) {
+        (Dimension::LENGTH, value) if long && value >= 1000.0 => {
+            format!("{} km", plain(value / 1000.0))
+        }
+        (Dimension::LENGTH, value) if long => format!("{} m", plain(value)),
+        (Dimension::TIME, _) if large => "1 s".to_owned(),
+        _ => dimension.example(),
     }
 }
 
@@ -245,10 +263,14 @@ impl Kind {
                     range.greatest.to_string()
                 }
             }
-            Self::Quantity(dimensions, _) | Self::WordOr(_, dimensions, _) => {
-                format!("\"{}\"", dimensions[0].example())
+            Self::Quantity(dimensions, range) | Self::WordOr(_, dimensions, range) => {
+                format!("\"{}\"", example_in(dimensions[0], *range))
             }
             Self::Unit(dimension) => format!("\"{}\"", dimension.si_unit()),
+            Self::Point(Dimension::LENGTH) => "[\"1 m\", \"2 m\"]".to_owned(),
+            Self::Points(Dimension::LENGTH) => {
+                "[[\"0 m\", \"0 m\"], [\"1 m\", \"0 m\"], [\"0 m\", \"1 m\"]]".to_owned()
+            }
             Self::Point(d) => format!("[\"{0}\", \"{0}\"]", d.example()),
             Self::Triple(d) => format!("[\"{0}\", \"{0}\", \"{0}\"]", d.example()),
             Self::Points(d) => format!("[[\"{0}\", \"{0}\"], …]", d.example()),

@@ -28,6 +28,7 @@ mod fingerprint;
 pub mod listing;
 pub mod measured;
 pub mod merge;
+pub mod names;
 pub mod quantity;
 pub mod reader;
 pub mod reference;

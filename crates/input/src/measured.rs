@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::names::nearest;
 use crate::system;
 use crate::{Dimension, Quantity};
 
@@ -231,6 +232,33 @@ impl Table {
         self.rows.iter().map(entry).collect()
     }
 
+    /// Returns the names of all columns, with their units, for error messages.
+    fn listed(&self) -> String {
+        let heads = self.columns.iter().map(|column| match &column.unit {
+            Some(unit) => format!("\"{} ({unit})\"", column.name),
+            None => format!("\"{}\"", column.name),
+        });
+        let heads: Vec<String> = heads.collect();
+        match heads.as_slice() {
+            [one] => format!("only the column {one}"),
+            _ => format!("the columns {}", heads.join(", ")),
+        }
+    }
+
+    /// Returns the error about a missing column, or about a column whose unit is not the expected one. `example` is the
+    /// header of the column, in backticks.
+    fn lacks(&self, name: &str, example: &str) -> TableError {
+        let names: Vec<&str> = self.names().collect();
+        let remedy = match nearest(name, &names) {
+            Some(near) => format!("if \"{near}\" is this column, write {example} in its place"),
+            None => format!(
+                "add the column, or write {example} as the heading of the column that holds its values"
+            ),
+        };
+        let expected = format!("a column {example}");
+        self.refuse(self.header_line, None, &expected, &self.listed(), &remedy)
+    }
+
     /// Returns the index and the unit of the only column with the given name. The unit must have the given dimension.
     fn place(&self, name: &str, dimension: Dimension) -> Result<(usize, &str), TableError> {
         let mut found = self.columns.iter().enumerate().filter(|(_, column)| column.is(name));
@@ -238,23 +266,13 @@ impl Table {
         let at_header = |column: Option<&str>, expected: &str, found: &str, remedy: &str| {
             self.refuse(self.header_line, column, expected, found, remedy)
         };
-        let listed = || {
-            let names: Vec<String> = self.names().map(|name| format!("\"{name}\"")).collect();
-            names.join(", ")
-        };
         let Some((at, column)) = found.next() else {
-            let expected = format!("a column {}", example());
-            return Err(at_header(
-                None,
-                &expected,
-                &listed(),
-                "give the column this name in the header",
-            ));
+            return Err(self.lacks(name, &example()));
         };
         if found.next().is_some() {
             let expected = format!("one column {}", example());
             let remedy = "keep one of the columns with this name";
-            return Err(at_header(None, &expected, &listed(), remedy));
+            return Err(at_header(None, &expected, &self.listed(), remedy));
         }
         let named = Some(column.name.as_str());
         let Some(unit) = column.unit.as_deref().filter(|unit| !unit.is_empty()) else {
@@ -315,14 +333,7 @@ impl Table {
         let place = self.columns.iter().position(|column| column.is(name));
         let unit = place.and_then(|at| self.columns[at].unit.as_deref());
         let (Some(at), Some("1/year" | "1/yr" | "1/a")) = (place, unit) else {
-            let heads = self.columns.iter().map(|column| match &column.unit {
-                Some(unit) => format!("\"{} ({unit})\"", column.name),
-                None => format!("\"{}\"", column.name),
-            });
-            let (expected, found) =
-                (format!("a column `{name} (1/year)`"), heads.collect::<Vec<_>>().join(", "));
-            let remedy = "give the column this name in the header";
-            return Err(self.refuse(self.header_line, None, &expected, &found, remedy));
+            return Err(self.lacks(name, &format!("`{name} (1/year)`")));
         };
         let number = |(line, row): &(usize, Vec<String>)| {
             let value = row[at].parse::<f64>().ok().filter(|value| value.is_finite());

@@ -6,6 +6,7 @@
 
 use crate::error::{InputError, Problem};
 use crate::field::{Default, Field, Kind, Section, Variant};
+use crate::names::advice;
 use crate::reader::item_name;
 use crate::tree::{Entry, Node, Origin, Sources, Table, Value, parse_value};
 
@@ -299,7 +300,8 @@ fn set_in_item(
     let number = || wanted.parse::<usize>().ok().filter(|n| (1..=items.len()).contains(n));
     let found = names.iter().position(|name| name == wanted).or_else(|| number().map(|n| n - 1));
     let Some(at) = found else {
-        return Err(format!("`{key}` has no item `{wanted}`; it has {}", names.join(", ")));
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        return Err(format!("`{key}` has no item `{wanted}`; {}", advice(wanted, &names)));
     };
     if let Value::Table(below) = &mut items[at].value
         && !rest.is_empty()

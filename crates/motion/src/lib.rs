@@ -120,7 +120,7 @@ pub use process::{MeanRemoval, Pads, Processed, Processing, Residuals};
 pub use pulse::Pulse;
 pub use pulse_class::{ClassifiedPulse, classify_component, classify_pair};
 pub use random::Random;
-pub use record::{Channel, Quantity, Record, Stage, StatedPeak, Warning};
+pub use record::{Channel, Implausible, Quantity, Record, Stage, StatedPeak, Warning};
 pub use response::{ResponsePeaks, ResponseSpectrum, response, standard_periods};
 pub use rotd::{RotatedPeak, rotated_peak, rotated_spectrum};
 pub use sampled::{Kinematics, Sampled};

@@ -158,19 +158,33 @@ impl Channel {
     }
 
     /// Returns the reason why the channel cannot be a strong-motion record: its time step, its number of
-    /// samples or its duration. Returns `None` if all three are plausible.
-    pub fn implausible(&self) -> Option<String> {
+    /// samples or its duration, with advice. Returns `None` if all three are plausible.
+    pub fn implausible(&self) -> Option<Implausible> {
         let (step, count, length) = (self.time_step, self.acceleration.len(), self.duration());
-        let what = if !(1e-4..=0.1).contains(&step) {
-            format!("a step of {step} s, but strong-motion records have steps of 0.0001 to 0.1 s")
-        } else if count < 50 {
-            format!("{count} samples, but strong-motion records have at least 50")
-        } else if length < 1.0 {
-            format!("a length of {length} s, but strong-motion records have at least 1 s")
-        } else {
-            return None;
+        let found = |what: String, advice| {
+            Some(Implausible { what: format!("channel {} has {what}", self.name), advice })
         };
-        Some(format!("channel {} has {what}", self.name))
+        if !(1e-4..=0.1).contains(&step) {
+            let what = format!(
+                "a step of {step} s, but strong-motion records have steps of 0.0001 to 0.1 s"
+            );
+            return found(what, "correct the time step or its unit");
+        }
+        if count < 50 {
+            let samples = if count == 1 { "sample" } else { "samples" };
+            let what = format!(
+                "only {count} {samples} ({length:.3} s), but strong-motion records have at least 50 samples"
+            );
+            return found(what, WHOLE_RECORD);
+        }
+        if length < 1.0 {
+            let what = format!(
+                "{count} samples at a step of {step} s, which is only {length:.3} s, but strong-motion records last \
+                 at least 1 s"
+            );
+            return found(what, "correct the time step, or give the whole record");
+        }
+        None
     }
 
     pub(crate) fn velocity(&self) -> Vec<f64> {
@@ -180,6 +194,25 @@ impl Channel {
     /// Returns `true` if the channel is known to be vertical.
     pub fn is_vertical(&self) -> bool {
         self.direction.orientation == Some(Orientation::Vertical)
+    }
+}
+
+/// Advice about a record of a few samples.
+const WHOLE_RECORD: &str = "the file is an excerpt or is truncated: give the whole record, or get the file again from \
+                            its source";
+
+/// Reason why a channel cannot be a strong-motion record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Implausible {
+    /// The channel, and what is implausible about it.
+    pub what: String,
+    /// What the user can do.
+    pub advice: &'static str,
+}
+
+impl fmt::Display for Implausible {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.what)
     }
 }
 

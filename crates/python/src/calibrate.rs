@@ -9,6 +9,7 @@ use barrelstack_calibration::shares::{Height, Statements, levels, shares};
 use barrelstack_calibration::{
     CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, stiffness,
 };
+use barrelstack_input::names::advice;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
@@ -178,7 +179,13 @@ pub(crate) fn calibrate_collapse(
         };
         let found = others.iter().find(|(name, _)| name == named);
         let (_, found) = found.ok_or_else(|| {
-            PyValueError::new_err(format!("no scenario named \"{named}\" was given"))
+            let known: Vec<&str> = others.iter().map(|(name, _)| name.as_str()).collect();
+            let next = if known.is_empty() {
+                "give it as an argument".to_owned()
+            } else {
+                advice(named, &known)
+            };
+            PyValueError::new_err(format!("no scenario named \"{named}\" was given; {next}"))
         })?;
         scenarios.push((*found.inner).clone());
     }

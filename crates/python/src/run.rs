@@ -9,6 +9,7 @@ use barrelstack::render::{Part, RenderFolder, Rendered, Rendering};
 use barrelstack::report;
 use barrelstack::variants::{Answer, Shown};
 use barrelstack::watch::{Joint, StressEnvelope};
+use barrelstack_input::names::advice;
 use barrelstack_report::{Format, Player, Scene, player_html};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::exceptions::{PyIndexError, PyValueError};
@@ -70,10 +71,8 @@ pub(crate) fn chosen<T: Copy, const N: usize>(
     name: impl Fn(T) -> &'static str,
 ) -> PyResult<Vec<T>> {
     if let Some(other) = names.iter().find(|given| !all.iter().any(|one| name(*one) == **given)) {
-        let known = all.map(&name).join(", ");
-        return Err(PyValueError::new_err(format!(
-            "there is no {what} {other:?}; choose from {known}"
-        )));
+        let next = advice(other, &all.map(&name));
+        return Err(PyValueError::new_err(format!("there is no {what} {other:?}; {next}")));
     }
     let requested = |one: &T| names.is_empty() || names.iter().any(|given| *given == name(*one));
     Ok(all.into_iter().filter(requested).collect())

@@ -11,6 +11,7 @@ use barrelstack::dynamics::{
 use barrelstack::ground::from_disk;
 use barrelstack::variants::{Answer, Plane, Shown, planes};
 use barrelstack::{RunFailure, Summary, pool};
+use barrelstack_input::names::advice;
 use barrelstack_space::Ground;
 use numpy::{PyArray1, PyArray3, PyArrayMethods as _, PyReadonlyArray2};
 use pyo3::exceptions::{PyKeyError, PyValueError};
@@ -205,10 +206,8 @@ impl Running {
         };
         found.ok_or_else(|| {
             let names: Vec<String> = self.names().into_iter().map(|(name, _)| name).collect();
-            PyKeyError::new_err(format!(
-                "there is no body {name:?}; there are {}",
-                names.join(", ")
-            ))
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            PyKeyError::new_err(format!("there is no body {name:?}; {}", advice(name, &names)))
         })
     }
 

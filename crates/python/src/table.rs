@@ -21,6 +21,7 @@ use barrelstack::ensemble::{CASE_COLUMNS, Grounds, Prepared, rows};
 use barrelstack::ground::{GroundError, held};
 use barrelstack::pool;
 use barrelstack::scenario::{FileRef, ScenarioError, fnv1a};
+use barrelstack_input::names::advice;
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values, to_csv};
 use barrelstack_report::shortest;
 use numpy::{IntoPyArray as _, PyReadonlyArray1};
@@ -176,7 +177,10 @@ impl Table {
 
 impl Table {
     fn column(&self, name: &str) -> PyResult<&Column> {
-        let missing = || PyKeyError::new_err(format!("there is no column {name:?}"));
+        let missing = || {
+            let names: Vec<&str> = self.columns.iter().map(|one| one.spec.name.as_str()).collect();
+            PyKeyError::new_err(format!("there is no column {name:?}; {}", advice(name, &names)))
+        };
         self.columns.iter().find(|column| column.spec.name == name).ok_or_else(missing)
     }
 

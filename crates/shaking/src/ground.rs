@@ -238,10 +238,9 @@ fn on_one_clock(
 fn require_strong_motion(record: &Record) -> Result<(), MotionError> {
     match record.channels.iter().find_map(Channel::implausible) {
         None => Ok(()),
-        Some(what) => Err(MotionError::mismatch(
-            format!("{}: {what}", record.file),
-            "correct the step or the unit, or give another record",
-        )),
+        Some(found) => {
+            Err(MotionError::mismatch(format!("{}: {}", record.file, found.what), found.advice))
+        }
     }
 }
 

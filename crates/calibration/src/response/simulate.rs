@@ -8,6 +8,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::pool;
 use barrelstack::run::{Run, RunFailure, time_step};
 use barrelstack::scenario::{Dimension, Scenario};
+use barrelstack_input::names::advice;
 
 use crate::parameters::{Parameter, Tunable};
 use crate::{CalibrateError, Table};
@@ -126,8 +127,8 @@ impl<'a> Simulator<'a> {
                     .filter(|name| !name.starts_with("ground_"))
                     .collect();
                 return Err(CalibrateError::Scenario(format!(
-                    "the scenario has no channel \"{name}\"; it has {}",
-                    names.join(", ")
+                    "the scenario has no channel \"{name}\"; {}",
+                    advice(name, &names)
                 )));
             }
         }

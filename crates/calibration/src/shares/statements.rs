@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use barrelstack_input::names::nearest;
 use barrelstack_input::system;
 use serde::Deserialize;
 
@@ -242,7 +243,12 @@ impl Statements {
         let known = || usable().map(|one| one.id.as_str()).collect::<Vec<_>>().join(", ");
         for name in names {
             let fault = match self.find(name) {
-                None => "there is no such statement".to_owned(),
+                None => {
+                    match nearest(name, &usable().map(|one| one.id.as_str()).collect::<Vec<_>>()) {
+                        Some(near) => format!("there is no such statement, did you mean `{near}`?"),
+                        None => "there is no such statement".to_owned(),
+                    }
+                }
                 Some((_, one)) if one.likelihood().is_none() => {
                     let reason = one.reason.as_deref().unwrap_or("it states no share");
                     format!("it has no likelihood: {}", reason.trim_end_matches('.'))

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use barrelstack_input::names::advice;
+
 use super::{HeightsError, Request};
 use crate::direction::{Direction, turned};
 use crate::protect::NAPA;
@@ -85,11 +87,12 @@ fn columns_and_rack(
 ) -> Result<(u32, String), HeightsError> {
     let catalog::CatalogRack { rack, .. } = catalog::rack(&request.rack).ok_or_else(|| {
         let known: Vec<&str> = catalog::RACKS.iter().map(|known| known.rack.base).collect();
-        HeightsError::Rack(request.rack.clone(), known.join(", "))
+        HeightsError::Rack(request.rack.clone(), advice(&request.rack, &known))
     })?;
     if catalog::barrel(&request.barrel).is_none() {
         let known: Vec<&str> = catalog::BARRELS.iter().map(|known| known.name).collect();
-        return Err(HeightsError::Barrel(request.barrel.clone(), known.join(", ")));
+        let next = advice(&request.barrel, &known);
+        return Err(HeightsError::Barrel(request.barrel.clone(), next));
     }
     // In the plane along the barrels, one rack is one column. A rail touches the bulged staves at its inner edge, which
     // requires a smaller node spacing but no other change of the rack.

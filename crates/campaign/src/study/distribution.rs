@@ -226,12 +226,22 @@ fn discrete(reader: &Reader<'_>, domain: Domain) -> Result<Vec<(f64, Setting)>, 
             .collect::<Result<_, _>>()?,
     };
     let total: f64 = weights.iter().sum();
-    if weights.len() != settings.len() || total <= 0.0 {
+    if weights.len() != settings.len() {
+        let counted = |count: usize, thing: &str| {
+            format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+        };
         let message = format!(
-            "there are {} values, and {} weights with a sum of {total}; give one weight per value, at least one weight \
-             above 0",
-            settings.len(),
-            weights.len()
+            "`{}` has {} for {}; give one weight per value",
+            reader.path_of("weights"),
+            counted(weights.len(), "weight"),
+            counted(settings.len(), "value")
+        );
+        return Err(reader.inconsistent("weights", message));
+    }
+    if total <= 0.0 {
+        let message = format!(
+            "all weights in `{}` are 0, so no value can be drawn; give at least one value a weight above 0",
+            reader.path_of("weights")
         );
         return Err(reader.inconsistent("weights", message));
     }

@@ -5,10 +5,11 @@ mod factor;
 use std::path::Path;
 
 use barrelstack_fragility::sobol;
+use barrelstack_input::names::advice;
 use barrelstack_motion::IntensityMeasure;
 
 use crate::scenario::field::{Kind, Range};
-use crate::scenario::reader::{Reader, nearest};
+use crate::scenario::reader::Reader;
 use crate::scenario::template::Opened;
 use crate::scenario::tree::Origin;
 use crate::scenario::{Dimension, FileRef, MotionSource, Place, Problem, Scenario, ScenarioError};
@@ -113,11 +114,9 @@ impl Study {
     pub fn built_in(name: &str) -> Result<Self, StudyError> {
         let Some(text) = super::builtin::get(name) else {
             let known: Vec<&str> = super::builtin::names().collect();
-            let near = nearest(name, &known)
-                .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            let next = advice(name, &known);
             return Err(StudyError::BuiltIn(format!(
-                "there is no built-in study \"{name}\"{near} (there are: {})",
-                known.join(", ")
+                "there is no built-in study \"{name}\": {next}"
             )));
         };
         Self::parse(&format!("{name}.toml"), text)
@@ -355,10 +354,7 @@ fn read_correlation(
     for (at, name) in names.iter().enumerate() {
         let Some(factor) = factors.iter().find(|factor| factor.name == *name) else {
             let known: Vec<&str> = factors.iter().map(|factor| &*factor.name).collect();
-            return refused(format!(
-                "there is no factor \"{name}\": use one of {}",
-                known.join(", ")
-            ));
+            return refused(format!("there is no factor \"{name}\": {}", advice(name, &known)));
         };
         let drawn = match &factor.variation {
             Variation::Distribution(distribution) => distribution.settings().is_none(),

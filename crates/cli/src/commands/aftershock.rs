@@ -12,6 +12,7 @@ use super::Loaded;
 use crate::args::{RunArgs, ScenarioArgs, VariantArgs};
 use crate::figures::PaperName;
 use crate::language::LanguageArgs;
+use crate::number::real;
 use crate::printer;
 use crate::progress::Progress;
 
@@ -22,7 +23,7 @@ pub(crate) struct AftershockArgs {
     scenario: String,
     /// Strength of the aftershock: factor by which the motion of the cellar, or the record, is multiplied. With several
     /// factors, such as 0.25,0.5,0.75, each aftershock follows the same main shock.
-    #[arg(long, value_name = "FACTOR", value_delimiter = ',', default_values_t = [0.5])]
+    #[arg(long, value_name = "FACTOR", value_delimiter = ',', default_values_t = [0.5], allow_negative_numbers = true, value_parser = real("a factor above 0 and up to 100, such as 0.5 for half the strength", |number| number > 0.0 && number <= 100.0))]
     scale: Vec<f64>,
     /// File of the ground motion of the aftershock, in place of the motion of the cellar.
     #[arg(long, value_name = "FILE")]
@@ -55,12 +56,6 @@ pub(crate) struct AftershockArgs {
 pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
     let mut strengths = args.scale.clone();
     strengths.sort_by(f64::total_cmp);
-    let valid = |scale: &&f64| **scale > 0.0 && **scale <= 100.0;
-    if let Some(scale) = strengths.iter().find(|scale| !valid(scale)) {
-        bail!(
-            "--scale {scale}: expected a factor above 0 and up to 100, such as 0.5 for half the strength"
-        );
-    }
     let same = strengths.windows(2).find(|two| two[0] == two[1]);
     if let Some(twice) = same.and_then(<[f64]>::first) {
         bail!("--scale: {twice} is given twice; give it once");

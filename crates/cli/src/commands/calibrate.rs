@@ -20,6 +20,7 @@ use crate::args::ScenarioArgs;
 use crate::interrupt::Stopped;
 use crate::lanes::LanesArgs;
 use crate::language::LanguageArgs;
+use crate::number::{real, whole};
 use crate::printer;
 use crate::progress::Progress;
 use crate::typed::{typed, word};
@@ -144,7 +145,7 @@ struct StiffnessArgs {
     /// The measurements (CSV).
     file: PathBuf,
     /// Number of seats or contact nodes that share the force; k applies to one seat or node.
-    #[arg(long, visible_alias = "seats", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, visible_alias = "seats", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(1..=u32::MAX))]
     nodes: u32,
     /// Scenario file (TOML) or name of a built-in scenario: the stack that was tapped, in the plane
     /// in which the stack swayed.
@@ -170,7 +171,7 @@ struct DropArgs {
     #[arg(long, requires = "mass", value_name = "K")]
     stiffness: Option<String>,
     /// Number of contact nodes that touch at the same time; k and c apply to one node.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(1..=u32::MAX))]
     nodes: u32,
     #[command(flatten)]
     pair: PairArgs,
@@ -223,7 +224,7 @@ struct CollapseArgs {
     fit: Vec<Fitted>,
     /// Range of each parameter: from the value in the scenario divided by this factor to that value multiplied by this
     /// factor.
-    #[arg(long, default_value_t = Settings::default().within, value_name = "FACTOR")]
+    #[arg(long, default_value_t = Settings::default().within, value_name = "FACTOR", allow_negative_numbers = true, value_parser = real("a factor above 1 and up to 100, such as 2", |number| number > 1.0 && number <= 100.0))]
     within: f64,
     /// Standard deviation of observed times, such as "0.05 s".
     #[arg(long, default_value = "0.05 s", value_name = "TIME")]
@@ -232,10 +233,10 @@ struct CollapseArgs {
     #[arg(long, default_value = "1 mm", value_name = "LENGTH")]
     placement: String,
     /// Number of parameter sets to simulate, each once per test.
-    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(50..=1_000_000))]
+    #[arg(long, default_value_t = 1000, allow_negative_numbers = true, value_parser = whole(50_u32..=1_000_000))]
     simulations: u32,
     /// Seed of the random numbers; the same seed gives the same result.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     seed: u64,
     #[command(flatten)]
     lanes: LanesArgs,
@@ -383,11 +384,6 @@ fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
 
 fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
     let parameters = parameters(&args.fit)?;
-    anyhow::ensure!(
-        args.within > 1.0 && args.within <= 100.0,
-        "--within: expected a factor between 1 and 100 such as 2, found {}",
-        args.within
-    );
     let settings = Settings {
         within: args.within,
         placement: positive("--placement", &args.placement, Dimension::LENGTH)?,

@@ -12,7 +12,9 @@ use barrelstack::variants;
 
 use super::Loaded;
 use crate::args::{CheckArgs, ScenarioArgs};
+use crate::interrupt::Stopped;
 use crate::printer;
+use crate::progress::Progress;
 
 /// Numbers of levels in the table of static stability.
 const LEVELS: std::ops::RangeInclusive<u32> = 2..=7;
@@ -70,17 +72,23 @@ fn table(scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Result<StabilityTa
     let known = catalog::RACKS.iter().map(|known| &known.rack);
     let own = known.clone().find(|rack| **rack == stack.rack).map(|rack| rack.base);
     let others = known.filter(|rack| Some(rack.base) != own).map(|rack| Some(rack.base));
+    let racks: Vec<Option<&str>> = std::iter::once(None).chain(others).collect();
+    let stacks = racks.len() * LEVELS.count();
+    let progress = Progress::new(true);
     let mut rows = Vec::new();
-    for rack in std::iter::once(None).chain(others) {
-        for levels in LEVELS {
-            let mut args = args.clone();
-            args.set.extend(rack.map(|rack| format!("stack.rack=\"{rack}\"")));
-            args.set.push(format!("stack.levels={levels}"));
-            let with = super::load(&args).and_then(|scenario| Ok(variants::planes(&scenario)?));
-            let with = with
-                .with_context(|| format!("{} with {levels} levels", rack.unwrap_or("the stack")))?;
-            rows.extend(with.iter().filter_map(|plane| StabilityRow::of(&plane.scenario)));
+    for (done, (rack, levels)) in
+        racks.iter().flat_map(|rack| LEVELS.map(move |levels| (*rack, levels))).enumerate()
+    {
+        if progress.counted(done as u64, stacks as u64, "stacks").is_break() {
+            return Err(Stopped.into());
         }
+        let mut args = args.clone();
+        args.set.extend(rack.map(|rack| format!("stack.rack=\"{rack}\"")));
+        args.set.push(format!("stack.levels={levels}"));
+        let with = super::load(&args).and_then(|scenario| Ok(variants::planes(&scenario)?));
+        let with =
+            with.with_context(|| format!("{} with {levels} levels", rack.unwrap_or("the stack")))?;
+        rows.extend(with.iter().filter_map(|plane| StabilityRow::of(&plane.scenario)));
     }
     Ok(StabilityTable { schema: "stability/1", title: scenario.title.clone(), rows })
 }

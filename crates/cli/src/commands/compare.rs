@@ -16,6 +16,7 @@ use super::Loaded;
 use crate::args::{ScenarioArgs, VariantArgs};
 use crate::interrupt::{Interrupt, Stopped};
 use crate::language::LanguageArgs;
+use crate::number::whole;
 use crate::printer;
 
 /// Examples at the end of the help of `compare`.
@@ -50,7 +51,7 @@ pub(crate) struct CompareArgs {
     record: Option<PathBuf>,
     /// Number of variants of each stack or cellar to run, in place of imperfections.variants; 0 runs only the stacks or
     /// cellars as stated.
-    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = whole(0_u32..=4096))]
     pub(super) variants: Option<u32>,
     /// Name of the first run, in place of a description of its differences; repeat this option for the second run, and
     /// so on.

@@ -8,6 +8,7 @@ use barrelstack_campaign::heights::{
 };
 
 use super::page::{PageArgs, of_option};
+use crate::number::whole;
 
 /// Arguments of `heights`.
 #[derive(Debug, clap::Args)]
@@ -19,7 +20,7 @@ pub(crate) struct HeightsArgs {
     #[arg(long, value_name = "NAME", default_value = "bordeaux-225")]
     barrel: String,
     /// Number of levels of the highest stack.
-    #[arg(long, visible_alias = "levels", value_name = "LEVELS", default_value_t = HIGHEST, value_parser = clap::value_parser!(u32).range(i64::from(LOWEST)..=i64::from(HIGHEST)))]
+    #[arg(long, visible_alias = "levels", value_name = "LEVELS", default_value_t = HIGHEST, allow_negative_numbers = true, value_parser = whole(LOWEST..=HIGHEST))]
     highest: u32,
     /// Simulate the stacks in three dimensions, shaken in a random horizontal direction in every run, instead of in the
     /// two planes across and along the barrels.
@@ -29,10 +30,10 @@ pub(crate) struct HeightsArgs {
     #[arg(long, value_name = "FILE")]
     record: Vec<PathBuf>,
     /// Number of synthetic motions in addition to the bundled record.
-    #[arg(long, value_name = "NUMBER", default_value_t = 22, value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 22, allow_negative_numbers = true, value_parser = whole(0_u32..=10_000))]
     synthetic: u32,
     /// Seed of the random motions and of the random friction, stiffness and damping of the seats.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u32::MAX))]
     seed: u32,
     /// Folder for the page and its studies; to continue after a stop, run the command again.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-heights")]

@@ -13,6 +13,7 @@ use barrelstack_report::significant;
 
 use super::page::{PageArgs, of_option};
 use crate::args::ScenarioArgs;
+use crate::number::{real, whole};
 use crate::printer;
 use crate::progress::Progress;
 
@@ -31,17 +32,17 @@ pub(crate) struct ProtectArgs {
     #[arg(long, value_name = "DIR")]
     motions: Option<PathBuf>,
     /// Maximum cost of the protection of one stack (US$).
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = real("an amount in US$ of 0 or more, such as 500", |number| number >= 0.0))]
     budget: Option<f64>,
     /// Number of motions per round, if no folder of motions is given.
-    #[arg(long, value_name = "NUMBER", default_value_t = 12, value_parser = clap::value_parser!(u32).range(4..=1000))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 12, allow_negative_numbers = true, value_parser = whole(4_u32..=1000))]
     count: u32,
     /// Number of rounds. The first round evaluates all protections; each further round evaluates the better half of the
     /// protections of the round before.
-    #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=12))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 3, allow_negative_numbers = true, value_parser = whole(1_u32..=12))]
     rounds: u32,
     /// Seed of the random motions and of the random friction, stiffness and damping of the seats.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u32::MAX))]
     seed: u32,
     /// Folder for the page and its studies; to continue after a stop, run the command again.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-protect")]
@@ -97,9 +98,6 @@ fn request(args: &ProtectArgs) -> anyhow::Result<Request> {
             "--motions {}: there is no such folder; give a folder with record files, or leave the option out",
             folder.display()
         );
-    }
-    if let Some(budget) = args.budget.filter(|budget| !(*budget >= 0.0 && budget.is_finite())) {
-        bail!("--budget {budget}: expected an amount in US$ of 0 or more");
     }
     Ok(Request {
         scenario,

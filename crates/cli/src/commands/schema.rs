@@ -11,6 +11,7 @@ use barrelstack_campaign::heights::HeightsDocument;
 use barrelstack_campaign::protect::ProtectDocument;
 use barrelstack_campaign::score::ScoreDocument;
 use barrelstack_cellar::comparison::CellarComparison;
+use barrelstack_input::names::nearest;
 use barrelstack_report::described;
 use serde_json::Value;
 
@@ -81,7 +82,11 @@ pub(crate) fn schema(args: &SchemaArgs) -> anyhow::Result<ExitCode> {
     let wanted = name.split('/').next().unwrap_or(name);
     let Some(known) = DOCUMENTS.iter().find(|known| known.name == wanted) else {
         let names: Vec<&str> = DOCUMENTS.iter().map(|known| known.name).collect();
-        bail!("there is no document \"{name}\"; use one of these names: {}", names.join(", "));
+        let next = match nearest(wanted, &names) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("use one of these names: {}", names.join(", ")),
+        };
+        bail!("there is no document \"{name}\"; {next}");
     };
     let schema = (known.schema)();
     if args.dictionary {

@@ -8,6 +8,7 @@ use barrelstack_campaign::score::{League, Protocol, ScoreError, Sheet, league, s
 
 use super::page::{self, PageArgs, of_option, write};
 use crate::args::ScenarioArgs;
+use crate::number::whole;
 use crate::printer;
 
 /// Arguments of `score`.
@@ -19,7 +20,7 @@ pub(crate) struct ScoreArgs {
     #[arg(long, conflicts_with = "json")]
     catalog: bool,
     /// Use South Napa and one in NUMBER of the other motions, for a faster estimate; the sheet states this number.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(1_u32..=4))]
     one_in: u32,
     /// Folder for the sheet and its studies; to continue after a stop, run the command again.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-score")]

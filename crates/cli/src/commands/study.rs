@@ -24,6 +24,7 @@ pub(crate) use answer::StudyResult;
 use crate::interrupt::{Interrupt, Stopped, keeps};
 use crate::lanes::LanesArgs;
 use crate::language::LanguageArgs;
+use crate::number::{counting, whole};
 use crate::printer;
 use crate::tables::TableArgs;
 
@@ -77,7 +78,7 @@ struct RunArgs {
     #[arg(long, value_name = "DIR", required = true)]
     out: Option<PathBuf>,
     /// Number of threads; by default, one per core. The results do not depend on this number.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = counting())]
     threads: Option<NonZero<usize>>,
     #[command(flatten)]
     lanes: LanesArgs,
@@ -98,7 +99,7 @@ struct ChunkArgs {
     #[command(flatten)]
     which: Which,
     /// Number of the chunk, counted from 0.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = whole(0..=usize::MAX))]
     chunk: usize,
     /// Folder for the results, shared by all chunks.
     #[arg(long, value_name = "DIR")]

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use crate::error::{InputError, Problem};
 use crate::field::{Default, Field, Kind, Section, Variant};
+pub use crate::names::nearest;
 use crate::quantity::shorten;
 use crate::tree::{Entry, Node, Origin, Sources, Table, Value};
 
@@ -303,47 +304,4 @@ pub fn item_name(item: &Node, index: usize) -> String {
 
 fn owned(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
-}
-
-/// Names that users of other programs write out of habit, each with a corresponding name in this program.
-const HABITS: &[(&str, &str)] = &[
-    ("mu", "coefficient"),
-    ("mu", "friction"),
-    ("mu_s", "static_coefficient"),
-    ("k", "stiffness"),
-    ("kn", "stiffness"),
-    ("c", "damping"),
-    ("e", "restitution"),
-    ("cor", "restitution"),
-    ("dt", "step"),
-    ("integrator", "method"),
-    ("tol", "tolerance"),
-    ("file", "record"),
-    ("diameter", "bilge_diameter"),
-    ("material", "kind"),
-];
-
-/// Returns the valid name most similar to a word, if any is close enough.
-pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
-    if word.len() > 60 {
-        return None;
-    }
-    let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
-    let word = plain(word);
-    let habit = HABITS.iter().find(|(habit, name)| *habit == word && valid.contains(name));
-    if let Some((_, name)) = habit {
-        return Some((*name).to_owned());
-    }
-    valid
-        .iter()
-        .map(|name| (strsim::damerau_levenshtein(&word, &plain(name)), *name))
-        .filter(|(distance, name)| *distance <= 1 + name.len().max(word.len()) / 4)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, name)| name.to_owned())
-        .or_else(|| {
-            // The word may be part of the right key, such as `coefficient` for
-            // `static_coefficient`.
-            let part = |name: &&&str| plain(name).contains(&word) || word.contains(&plain(name));
-            valid.iter().filter(|_| word.len() >= 3).find(part).map(|name| (*name).to_owned())
-        })
 }

@@ -3,7 +3,7 @@
 use crate::FileRef;
 use crate::dimension::Dimension;
 use crate::error::{InputError, Problem};
-use crate::field::{Default, Field, Kind, Named, Range};
+use crate::field::{Default, Field, Kind, Named, Range, example_in};
 use crate::quantity::{Quantity, plain, shorten};
 use crate::tree::{Node, Origin, Value, parse_value};
 
@@ -376,7 +376,11 @@ impl Reader<'_> {
         match &node.value {
             Value::Text(text) => {
                 let quantity = Quantity::parse_as(text, dimensions).map_err(|reason| {
-                    let example = format!("\"{}\"", Quantity::suggestion(text, dimensions));
+                    let mut example = Quantity::suggestion(text, dimensions);
+                    if example == dimensions[0].example() {
+                        example = example_in(dimensions[0], range);
+                    }
+                    let example = format!("\"{example}\"");
                     let field = self.path_of(name);
                     self.sources.error(node.origin, Problem::Quantity { field, reason, example })
                 })?;

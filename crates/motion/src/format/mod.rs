@@ -157,6 +157,11 @@ pub const FORMATS: &[Format] = &[
     columns::FORMAT,
 ];
 
+/// Description of the readable formats in the error about a file of another format. A list of all names would hide
+/// the rest of the message.
+const KNOWN_FORMATS: &str = "a strong-motion record in a known format, such as PEER AT2, COSMOS, CSMIP, K-NET, ESM, SAC, \
+                             SEED, or plain columns of numbers";
+
 /// Known formats that are refused. These formats are tried before all others.
 const KNOWN_OTHERS: &[Format] = &[
     refused::HDF5,
@@ -257,7 +262,7 @@ fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadEr
         return Err(source.error(
             (),
             Refusal::Unrecognized,
-            format!("one of {}", names()),
+            KNOWN_FORMATS,
             quoted::binary(source.bytes).unwrap_or_else(first_line),
             "convert the file to plain columns, with one value, or time and value, per line",
         ));
@@ -298,11 +303,6 @@ fn initial_velocities(
                 "correct the header line",
             )
         })
-}
-
-/// Returns the names of all formats, for messages.
-fn names() -> String {
-    FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ")
 }
 
 fn check_options(source: &Source<'_>, options: &ReadOptions) -> Result<(), ReadError> {
@@ -403,7 +403,7 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
                 ));
             }
         }
-        messages.extend(record.channels[index].implausible());
+        messages.extend(record.channels[index].implausible().map(|found| found.what));
         let in_g = pga / STANDARD_GRAVITY;
         if in_g > 3.0 {
             messages.push(format!("channel {label}: PGA is {in_g:.3} g; check the unit"));

@@ -30,12 +30,12 @@ pub enum GroundError {
         error: MotionError,
     },
     /// There is no bundled record of this name.
-    #[error("there is no bundled record \"{name}\"; the bundled records are: {known}")]
+    #[error("there is no bundled record \"{name}\"; {next}")]
     UnknownBundled {
         /// The requested name.
         name: String,
-        /// The available names.
-        known: String,
+        /// Advice to use one of the available names.
+        next: String,
     },
     /// The unit that the scenario states for a file is not a supported unit of acceleration.
     #[error(

@@ -2,6 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use barrelstack_input::names::advice;
 use barrelstack_input::{FileRef, system};
 use barrelstack_motion::{
     AccelerationUnit, Archive, Given, MotionError, ReadFailure, ReadOptions, Record, Refusal,
@@ -106,7 +107,7 @@ pub(super) fn read(spec: &RecordMotion) -> Result<Record, GroundError> {
         RecordSource::Bundled(name) => {
             barrelstack_motion::bundled(name).ok_or_else(|| GroundError::UnknownBundled {
                 name: name.clone(),
-                known: barrelstack_motion::BUNDLED.join(", "),
+                next: advice(name, barrelstack_motion::BUNDLED),
             })
         }
         RecordSource::File(file) => read_file(file, &options, &how_to_obtain(spec)),

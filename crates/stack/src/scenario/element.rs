@@ -2,6 +2,7 @@
 
 use barrelstack_input::choices::Chosen as _;
 use barrelstack_input::declared::Declared as _;
+use barrelstack_input::names::advice;
 use barrelstack_input::reader::Reader;
 use barrelstack_input::{choices, section};
 
@@ -104,10 +105,9 @@ pub(super) fn read(
         }
         for body in between {
             if *body != ground.kind && bodies.iter().all(|known| known.name != *body) {
-                let names = bodies.iter().map(|body| body.name.as_str()).take(20);
+                let names = bodies.iter().map(|body| body.name.as_str());
                 let names: Vec<&str> = names.chain([ground.kind.as_str()]).collect();
-                let message =
-                    format!("no body is called \"{body}\"; the bodies are {}", names.join(", "));
+                let message = format!("no body is called \"{body}\"; {}", advice(body, &names));
                 return Err(reader.inconsistent("between", message));
             }
         }

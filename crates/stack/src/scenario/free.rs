@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use barrelstack_columns::column::column_name;
 use barrelstack_input::choices::Chosen as _;
 use barrelstack_input::declared::{self, Declared as _};
+use barrelstack_input::names::advice;
 use barrelstack_input::{section, table};
 
 use super::dimension::Dimension;
@@ -308,10 +309,8 @@ fn read_interfaces(
         let between = reader.pair("between")?;
         for kind in &between {
             if !kinds.contains(&kind.as_str()) {
-                let message = format!(
-                    "no body is of the kind \"{kind}\"; the kinds are {}",
-                    kinds.join(", ")
-                );
+                let message =
+                    format!("no body is of the kind \"{kind}\"; {}", advice(kind, &kinds));
                 return Err(reader.inconsistent("between", message));
             }
         }

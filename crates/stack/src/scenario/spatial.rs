@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use barrelstack_bodies::{Solid, SpatialBody};
 use barrelstack_columns::column::column_name;
 use barrelstack_input::declared::Declared as _;
+use barrelstack_input::names::advice;
 use barrelstack_input::reader::Reader;
 use barrelstack_input::section;
 use barrelstack_input::writer::Writer;
@@ -107,8 +108,7 @@ fn read_interfaces(
     for reader in root.sections("interface")? {
         let between = reader.pair("between")?;
         if let Some(kind) = between.iter().find(|kind| !kinds.contains(&kind.as_str())) {
-            let message =
-                format!("no body is of the kind \"{kind}\"; the kinds are {}", kinds.join(", "));
+            let message = format!("no body is of the kind \"{kind}\"; {}", advice(kind, &kinds));
             return Err(reader.inconsistent("between", message));
         }
         // Two solids form one contact pair, whatever their order.

@@ -22,6 +22,7 @@ mod target;
 
 use std::process::ExitCode;
 
+use barrelstack_motion::FORMATS;
 use clap::Subcommand;
 
 /// Text at the end of `motion --help`.
@@ -40,9 +41,18 @@ Accelerations are linear between samples; velocities and displacements are their
 
 pub(crate) use info::MotionInfo;
 
+/// Returns the text at the end of `motion --help`, with the formats that can be read.
+fn after_help() -> String {
+    let formats = FORMATS.iter().map(|format| format!("  {:14}{}", format.name, format.title));
+    let formats = formats.collect::<Vec<_>>().join("\n");
+    format!(
+        "{AFTER_HELP}\n\nFormats that are read; the content of a file determines its format:\n{formats}"
+    )
+}
+
 /// Arguments of `motion`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = after_help())]
 pub(crate) struct MotionArgs {
     /// Action on the motion.
     #[command(subcommand)]

@@ -16,6 +16,7 @@ use super::output::{Form, Output};
 use super::page::{self, PageText};
 use super::panels;
 use crate::language::LanguageArgs;
+use crate::number::whole;
 use crate::typed::{typed, word};
 
 /// Arguments of `process`.
@@ -46,7 +47,7 @@ pub(super) struct ProcessArgs {
     #[arg(long, value_name = "FREQUENCY")]
     low_pass: Option<String>,
     /// Order of the Butterworth filter, which is applied forward and backward.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = whole(1..=12_u32))]
     order: Option<u32>,
     /// Treatment of the zeros that are added before and after the record for the filter (pads).
     #[arg(long, value_enum)]

@@ -8,6 +8,7 @@ use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures::{self, reading};
 use super::output::Output;
 use super::table::number;
+use crate::number::real;
 
 /// Arguments of `scale`.
 #[derive(Debug, clap::Args)]
@@ -27,11 +28,11 @@ pub(super) struct ScaleArgs {
     #[arg(long, value_name = "NAME", requires = "to")]
     of: Option<String>,
     /// Multiply the accelerations by this factor.
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = real("a number other than 0, such as 2", |number| number != 0.0))]
     factor: Option<f64>,
     /// Length of a model divided by that of its prototype, such as 0.25: time is multiplied by the square root of this
     /// ratio, and accelerations remain unchanged. Applied after --to or --factor, if one of them is also given.
-    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true, value_parser = real("a ratio of lengths above 0, such as 0.25", |number| number > 0.0))]
     froude: Option<f64>,
     #[command(flatten)]
     output: Output,
@@ -55,9 +56,6 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
         ));
     }
     if let Some(factor) = args.factor {
-        if !factor.is_finite() || factor == 0.0 {
-            bail!("--factor: expected a number other than 0, found {factor}");
-        }
         after = after.multiplied(factor);
         after.notes.push(format!("scaled by {factor}; one factor for all components"));
     }
@@ -97,9 +95,6 @@ fn factor_to(
 }
 
 fn froude(record: &mut Record, length: f64) -> anyhow::Result<()> {
-    if !(length.is_finite() && length > 0.0) {
-        bail!("--froude: expected a ratio of lengths above 0, found {length}");
-    }
     let time = length.sqrt();
     for channel in &mut record.channels {
         channel.time_step *= time;

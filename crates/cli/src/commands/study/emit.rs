@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use clap::ValueEnum;
 
+use crate::number::counting;
 use crate::printer;
 
 /// Arguments of `study emit`.
@@ -26,11 +27,11 @@ pub(super) struct EmitArgs {
     walltime: Option<String>,
     /// Maximum number of chunks that run at the same time; by default, as many as the scheduler
     /// allows (slurm, parallel).
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = counting())]
     throttle: Option<NonZero<usize>>,
     /// Maximum number of tasks in an array job, `MaxArraySize` in Slurm's configuration; by default
     /// 1001 (slurm).
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = counting())]
     array_limit: Option<NonZero<usize>>,
 }
 

@@ -16,6 +16,7 @@ use clap::ValueEnum;
 use super::folder::{self, Batch, FolderArgs, Worked};
 use super::input::Input;
 use crate::language::LanguageArgs;
+use crate::number::{real, whole};
 use crate::printer;
 use crate::tables::TableArgs;
 use limits::{Limits, Range};
@@ -48,7 +49,7 @@ pub(super) struct SelectArgs {
     #[arg(long, value_name = "ACCELERATION", requires = "at", conflicts_with = "epsilon")]
     level: Option<String>,
     /// Sa at the period given with --at, as the number of standard deviations of ln Sa above the median.
-    #[arg(long, value_name = "NUMBER", requires = "at", allow_hyphen_values = true)]
+    #[arg(long, value_name = "NUMBER", requires = "at", allow_hyphen_values = true, value_parser = real("a number of standard deviations, such as 1.5 or -0.5", |_| true))]
     epsilon: Option<f64>,
     /// Shortest period to match.
     #[arg(long, value_name = "TIME", default_value = "0.05 s")]
@@ -57,7 +58,7 @@ pub(super) struct SelectArgs {
     #[arg(long, value_name = "TIME", default_value = "5 s")]
     longest: String,
     /// Number of records; by default 30, or fewer if fewer records can be scaled to the target.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = whole(1..=usize::MAX))]
     count: Option<usize>,
     /// Kind of spectrum that is compared with the target, for each record.
     #[arg(long, value_enum, default_value_t = Spectrum::Rotd50)]
@@ -68,10 +69,10 @@ pub(super) struct SelectArgs {
     #[command(flatten)]
     limits: Limits,
     /// Maximum number of records of one earthquake.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = whole(1..=usize::MAX))]
     most_of_event: Option<usize>,
     /// Seed of the random spectra that are drawn from the target.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     seed: u64,
     /// Scenario that the study of the selected set runs.
     #[arg(long, value_name = "SCENARIO", default_value = "candia-8-barrels")]
