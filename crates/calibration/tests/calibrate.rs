@@ -322,7 +322,7 @@ fn a_table_is_refused_at_its_place() {
         ),
         (
             "depth (mm),force (kN)\n1,2\n",
-            "t.csv, line 1: expected a column `penetration (m)`, found \"depth\", \"force\"",
+            "t.csv, line 1: expected a column `penetration (m)`, found the columns \"depth (mm)\", \"force (kN)\"; add",
         ),
         ("penetration (mm),force (kN)\n", "t.csv: it has a header but no measurements"),
         ("", "t.csv: it is empty"),

@@ -215,7 +215,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     (
         4,
         "[design]\nkind = \"full-factorial\"\ncount = 10 # HERE\n",
-        &["`count` does not belong to `kind = \"full-factorial\"`"],
+        &["`count` does not belong to `kind = \"full-factorial\"`", "leave it out"],
     ),
     (
         4,

@@ -244,9 +244,10 @@ impl Columns {
         let cells = cells(line);
         if cells.len() != self.names.len() {
             return Err(format!(
-                "there are {} cells, but {} columns: fill every cell, with 0 where nothing moved",
-                cells.len(),
-                self.names.len()
+                "expected {} cells, one for each column of the header, found {}: fill every cell, with 0 where \
+                 nothing moved",
+                self.names.len(),
+                cells.len()
             ));
         }
         Ok(Row { columns: self, cells })

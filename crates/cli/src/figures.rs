@@ -12,7 +12,13 @@ pub(crate) struct FigureArgs {
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Vec<FormatName>,
     /// Resolution (dots per inch) of figures in PNG.
-    #[arg(long, value_name = "DPI", default_value = "200", allow_negative_numbers = true, value_parser = real("a number of dots per inch from 20 to 1200, such as 300", |number| (20.0..=1200.0).contains(&number)))]
+    #[arg(
+        long, value_name = "DPI", default_value = "200", allow_negative_numbers = true,
+        value_parser = real(
+            "a number of dots per inch from 20 to 1200, such as 300",
+            |number| (20.0..=1200.0).contains(&number)
+        )
+    )]
     pub(crate) dpi: f64,
 }
 

@@ -201,7 +201,7 @@ fn a_state_that_was_changed_by_hand_is_refused_at_its_line() {
         ("", "the file is empty"),
         ("stack,body\n", "no column of shifts"),
         ("body,dx (m)\n", "no column `stack`"),
-        ("stack,dx\n1-1,0\n", "unknown column \"dx\""),
+        ("stack,dx\n1-1,0\n", "unknown column \"dx\": did you mean `dx (m)`?"),
         ("stack,dx (m)\n1-1,far\n", "survey.csv:2: column \"dx (m)\": expected a number"),
         ("stack,dx (m)\n1-1,inf\n", "expected a number"),
         (
@@ -213,7 +213,7 @@ fn a_state_that_was_changed_by_hand_is_refused_at_its_line() {
             "stack,body,dx (m)\n1-1,B9.9,0.1\n",
             "survey.csv:2: column \"body\": stack \"1-1\" has no body",
         ),
-        ("stack,dx (m)\n1-1\n", "survey.csv:2: there are 1 cells"),
+        ("stack,dx (m)\n1-1\n", "survey.csv:2: expected 2 cells, one for each column"),
         (&format!("{head}1-1,B1.1,0,0,0,2,0,0,0\n"), "survey.csv:2: columns qw, qx, qy, qz"),
         (&format!("{head}1-1,B1.1,0,0,0,1,0,0,0\n"), "there is no pose of body"),
         (&format!("{head}1-1,B1.1,0,0,0,1,0,0,0\n1-1,B1.1,0,0,0,1,0,0,0\n"), "has two poses"),

@@ -283,6 +283,15 @@ fn a_name_that_is_nothing_is_answered_with_the_nearest() {
         out,
         &["no file \"candia-8-barels\"", "did you mean `candia-8-barrels`?"],
     );
+    // The words of the name may be in another order.
+    for (typed, meant) in [("napa-demo", "demo-napa"), ("barrels-8-candia", "candia-8-barrels")] {
+        let other = barrelstack(["run", typed]);
+        refused("order", &other, out, &[&format!("did you mean `{meant}`?")]);
+    }
+    let document = barrelstack(["schema", "info-motion"]);
+    refused("document", &document, out, &["no document", "did you mean `motion-info`?"]);
+    let rack = barrelstack(["heights", "--rack=barrel-two", "--out=nowhere"]);
+    refused("rack", &rack, out, &["no rack `barrel-two`", "did you mean `two-barrel`?"]);
     let far = barrelstack(["run", "something"]);
     refused("far", &far, out, &["no file \"something\"", "`barrelstack scenarios`"]);
     refused("file", &barrelstack(["check", "none.toml"]), out, &["none.toml", "no such file"]);

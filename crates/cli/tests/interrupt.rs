@@ -120,6 +120,12 @@ fn every_command_ends_and_says_what_is_kept() {
 }
 
 #[test]
+fn a_table_of_stability_shows_its_progress_and_stops() {
+    let folder = tempfile::tempdir().unwrap();
+    stops_at("1:stacks:2", &["check", "demo-napa", "--table"], folder.path(), false);
+}
+
+#[test]
 fn a_study_that_was_stopped_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let study = format!(

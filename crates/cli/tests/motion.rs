@@ -423,6 +423,46 @@ fn what_is_there_is_not_replaced_unasked() {
 }
 
 #[test]
+fn a_file_of_no_format_is_refused_with_the_command_that_lists_the_formats() {
+    let folder = tempfile::tempdir().unwrap();
+    let prose = folder.path().join("prose.txt");
+    fs::write(&prose, "This folder holds records.\n").unwrap();
+    for arguments in [
+        vec!["motion", "info", text(&prose)],
+        vec!["run", "demo-napa", "--set=motion.vertical=false", "--record", text(&prose)],
+    ] {
+        let said = stderr(&barrelstack(&arguments));
+        assert!(said.contains("in a known format, such as PEER AT2"), "{said}");
+        assert!(said.contains("`barrelstack motion --help` lists all formats"), "{said}");
+        assert!(!said.contains("csmip-v2, bhrc"), "{said}");
+    }
+    let help = stdout(&barrelstack(["motion", "--help"]));
+    for format in barrelstack_motion::FORMATS {
+        assert!(help.contains(format.name) && help.contains(format.title), "{}", format.name);
+    }
+}
+
+#[test]
+fn a_record_of_a_few_samples_is_refused_as_an_excerpt() {
+    let folder = tempfile::tempdir().unwrap();
+    let few = folder.path().join("few.at2");
+    let rows = "0.1 0.2 -0.1 0.0 0.1 -0.2 0.1 0.0 0.1 0.2 0.0\n";
+    let head = "A\nEVENT, STATION, 90\nACCELERATION IN UNITS OF G\nNPTS= 11, DT= .01 SEC\n";
+    fs::write(&few, format!("{head}{rows}")).unwrap();
+    let said = stderr(&barrelstack([
+        "run",
+        "demo-napa",
+        "--set=motion.vertical=false",
+        "--record",
+        text(&few),
+    ]));
+    for word in ["only 11 samples (0.100 s)", "at least 50 samples", "give the whole record"] {
+        assert!(said.contains(word), "{said}");
+    }
+    assert!(!said.contains("unit"), "{said}");
+}
+
+#[test]
 fn mistakes_are_one_error_and_nothing_is_written() {
     let (folder, first) = napa();
     let first = text(&first);

@@ -121,7 +121,10 @@ pub enum Problem {
         valid: Vec<String>,
     },
     /// A key that belongs to a variant other than the selected one.
-    #[error("`{key}` does not belong to `{tag} = \"{variant}\"` in {section}, only to {owners}")]
+    #[error(
+        "`{key}` does not belong to `{tag} = \"{variant}\"` in {section}, only to {owners}; leave it out, \
+         or set `{tag}` to {owners}"
+    )]
     ForeignKey {
         /// The key.
         key: String,
@@ -131,7 +134,7 @@ pub enum Problem {
         tag: String,
         /// Name of the selected variant.
         variant: String,
-        /// Names of the variants that have this field, in quotation marks and joined by "and".
+        /// Names of the variants that have this field, in quotation marks and joined by "or".
         owners: String,
         /// All valid keys.
         valid: Vec<String>,

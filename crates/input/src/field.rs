@@ -206,8 +206,8 @@ impl Field {
     }
 }
 
-/// Returns a quantity of a dimension as a user would write it. A length with a high limit, such as that of a room, has a
-/// longer example than that of a barrel: a hundredth of the limit. A time that may be long is not as short as a step.
+/// Returns a quantity of a dimension as a user would write it. A length with a high limit, such as that of a room, has
+/// a longer example than that of a barrel: a hundredth of the limit. A time that may be long is not as short as a step.
 pub(crate) fn example_in(dimension: Dimension, range: Range) -> String {
     let large = (100.0..VAST).contains(&range.greatest);
     // A lower limit above zero belongs to lengths of bodies.

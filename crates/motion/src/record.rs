@@ -179,8 +179,8 @@ impl Channel {
         }
         if length < 1.0 {
             let what = format!(
-                "{count} samples at a step of {step} s, which is only {length:.3} s, but strong-motion records last \
-                 at least 1 s"
+                "a length of {length} s ({count} samples at a step of {step} s), but strong-motion records last at \
+                 least 1 s"
             );
             return found(what, "correct the time step, or give the whole record");
         }

@@ -23,7 +23,13 @@ pub(crate) struct AftershockArgs {
     scenario: String,
     /// Strength of the aftershock: factor by which the motion of the cellar, or the record, is multiplied. With several
     /// factors, such as 0.25,0.5,0.75, each aftershock follows the same main shock.
-    #[arg(long, value_name = "FACTOR", value_delimiter = ',', default_values_t = [0.5], allow_negative_numbers = true, value_parser = real("a factor above 0 and up to 100, such as 0.5 for half the strength", |number| number > 0.0 && number <= 100.0))]
+    #[arg(
+        long, value_name = "FACTOR", value_delimiter = ',', default_values_t = [0.5], allow_negative_numbers = true,
+        value_parser = real(
+            "a factor above 0 and up to 100, such as 0.5 for half the strength",
+            |number| number > 0.0 && number <= 100.0
+        )
+    )]
     scale: Vec<f64>,
     /// File of the ground motion of the aftershock, in place of the motion of the cellar.
     #[arg(long, value_name = "FILE")]

@@ -145,7 +145,10 @@ struct StiffnessArgs {
     /// The measurements (CSV).
     file: PathBuf,
     /// Number of seats or contact nodes that share the force; k applies to one seat or node.
-    #[arg(long, visible_alias = "seats", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(1..=u32::MAX))]
+    #[arg(
+        long, visible_alias = "seats", default_value_t = 1, allow_negative_numbers = true,
+        value_parser = whole(1..=u32::MAX)
+    )]
     nodes: u32,
     /// Scenario file (TOML) or name of a built-in scenario: the stack that was tapped, in the plane
     /// in which the stack swayed.
@@ -224,7 +227,10 @@ struct CollapseArgs {
     fit: Vec<Fitted>,
     /// Range of each parameter: from the value in the scenario divided by this factor to that value multiplied by this
     /// factor.
-    #[arg(long, default_value_t = Settings::default().within, value_name = "FACTOR", allow_negative_numbers = true, value_parser = real("a factor above 1 and up to 100, such as 2", |number| number > 1.0 && number <= 100.0))]
+    #[arg(
+        long, default_value_t = Settings::default().within, value_name = "FACTOR", allow_negative_numbers = true,
+        value_parser = real("a factor above 1 and up to 100, such as 2", |number| number > 1.0 && number <= 100.0)
+    )]
     within: f64,
     /// Standard deviation of observed times, such as "0.05 s".
     #[arg(long, default_value = "0.05 s", value_name = "TIME")]

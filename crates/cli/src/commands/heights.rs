@@ -20,7 +20,11 @@ pub(crate) struct HeightsArgs {
     #[arg(long, value_name = "NAME", default_value = "bordeaux-225")]
     barrel: String,
     /// Number of levels of the highest stack.
-    #[arg(long, visible_alias = "levels", value_name = "LEVELS", default_value_t = HIGHEST, allow_negative_numbers = true, value_parser = whole(LOWEST..=HIGHEST))]
+    #[arg(
+        long, visible_alias = "levels", value_name = "LEVELS", default_value_t = HIGHEST,
+        allow_negative_numbers = true,
+        value_parser = whole(LOWEST..=HIGHEST)
+    )]
     highest: u32,
     /// Simulate the stacks in three dimensions, shaken in a random horizontal direction in every run, instead of in the
     /// two planes across and along the barrels.
@@ -30,10 +34,16 @@ pub(crate) struct HeightsArgs {
     #[arg(long, value_name = "FILE")]
     record: Vec<PathBuf>,
     /// Number of synthetic motions in addition to the bundled record.
-    #[arg(long, value_name = "NUMBER", default_value_t = 22, allow_negative_numbers = true, value_parser = whole(0_u32..=10_000))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 22, allow_negative_numbers = true,
+        value_parser = whole(0_u32..=10_000)
+    )]
     synthetic: u32,
     /// Seed of the random motions and of the random friction, stiffness and damping of the seats.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u32::MAX))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true,
+        value_parser = whole(0..=u32::MAX)
+    )]
     seed: u32,
     /// Folder for the page and its studies; to continue after a stop, run the command again.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-heights")]

@@ -32,17 +32,29 @@ pub(crate) struct ProtectArgs {
     #[arg(long, value_name = "DIR")]
     motions: Option<PathBuf>,
     /// Maximum cost of the protection of one stack (US$).
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = real("an amount in US$ of 0 or more, such as 500", |number| number >= 0.0))]
+    #[arg(
+        long, value_name = "NUMBER", allow_negative_numbers = true,
+        value_parser = real("an amount in US$ of 0 or more, such as 500", |number| number >= 0.0)
+    )]
     budget: Option<f64>,
     /// Number of motions per round, if no folder of motions is given.
-    #[arg(long, value_name = "NUMBER", default_value_t = 12, allow_negative_numbers = true, value_parser = whole(4_u32..=1000))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 12, allow_negative_numbers = true,
+        value_parser = whole(4_u32..=1000)
+    )]
     count: u32,
     /// Number of rounds. The first round evaluates all protections; each further round evaluates the better half of the
     /// protections of the round before.
-    #[arg(long, value_name = "NUMBER", default_value_t = 3, allow_negative_numbers = true, value_parser = whole(1_u32..=12))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 3, allow_negative_numbers = true,
+        value_parser = whole(1_u32..=12)
+    )]
     rounds: u32,
     /// Seed of the random motions and of the random friction, stiffness and damping of the seats.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u32::MAX))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true,
+        value_parser = whole(0..=u32::MAX)
+    )]
     seed: u32,
     /// Folder for the page and its studies; to continue after a stop, run the command again.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-protect")]

@@ -36,16 +36,28 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     language: LanguageArgs,
     /// Frames and ParaView time steps per second of simulated time; animations have at most 50 frames per second.
-    #[arg(long, value_name = "HZ", default_value = "20", allow_negative_numbers = true, value_parser = real("a number of frames per second above 0, such as 20", |number| number > 0.0))]
+    #[arg(
+        long, value_name = "HZ", default_value = "20", allow_negative_numbers = true,
+        value_parser = real("a number of frames per second above 0, such as 20", |number| number > 0.0)
+    )]
     rate: f64,
     /// Start (s) of the interval to render.
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = real("a time in seconds of 0 or more, such as 2.5", |number| number >= 0.0))]
+    #[arg(
+        long, value_name = "SECONDS", allow_negative_numbers = true,
+        value_parser = real("a time in seconds of 0 or more, such as 2.5", |number| number >= 0.0)
+    )]
     from: Option<f64>,
     /// End (s) of the interval to render.
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = real("a time in seconds above 0, such as 10", |number| number > 0.0))]
+    #[arg(
+        long, value_name = "SECONDS", allow_negative_numbers = true,
+        value_parser = real("a time in seconds above 0, such as 10", |number| number > 0.0)
+    )]
     to: Option<f64>,
     /// Longer side of animations (pixels).
-    #[arg(long, value_name = "PIXELS", default_value = "480", allow_negative_numbers = true, value_parser = whole(64_u32..=4096))]
+    #[arg(
+        long, value_name = "PIXELS", default_value = "480", allow_negative_numbers = true,
+        value_parser = whole(64_u32..=4096)
+    )]
     size: u32,
     /// Replace the files that an earlier rendering of the same parts wrote.
     #[arg(long)]

@@ -20,7 +20,10 @@ pub(crate) struct ScoreArgs {
     #[arg(long, conflicts_with = "json")]
     catalog: bool,
     /// Use South Napa and one in NUMBER of the other motions, for a faster estimate; the sheet states this number.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(1_u32..=4))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true,
+        value_parser = whole(1_u32..=4)
+    )]
     one_in: u32,
     /// Folder for the sheet and its studies; to continue after a stop, run the command again.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-score")]

@@ -66,7 +66,7 @@ impl<'a> Reader<'a> {
                         section: self.label(),
                         tag: variants.tag.to_owned(),
                         variant: variant.name.to_owned(),
-                        owners: owners.join(" and "),
+                        owners: either(&owners),
                         valid: owned(&valid),
                     }
                 }
@@ -304,4 +304,13 @@ pub fn item_name(item: &Node, index: usize) -> String {
 
 fn owned(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
+}
+
+/// Joins words by commas, the last one by "or".
+fn either(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [others @ .., last] => format!("{} or {last}", others.join(", ")),
+    }
 }

@@ -351,7 +351,11 @@ impl Reader<'_> {
             let problem = Problem::WrongType {
                 field: self.path_of(name),
                 expected: kind.to_string(),
-                found: format!("a list of {}", items.len()),
+                found: match items.len() {
+                    0 => "an empty list".to_owned(),
+                    1 => "a list with 1 item".to_owned(),
+                    count => format!("a list with {count} items"),
+                },
             };
             return Err(self.sources.error(node.origin, problem));
         }
@@ -440,7 +444,8 @@ impl Reader<'_> {
         {
             let one =
                 Node { origin: node.origin, value: Value::Text(format!("1 {}", text.trim())) };
-            return self.read_quantity(name, &one, &[dimension], Range::POSITIVE);
+            let read = self.read_quantity(name, &one, &[dimension], Range::POSITIVE);
+            return read.map_err(|error| unit_alone(&error));
         }
         self.read_quantity(name, node, &[dimension], Range::POSITIVE)
     }
@@ -478,4 +483,15 @@ impl Reader<'_> {
         };
         self.sources.error(node.origin, problem)
     }
+}
+
+/// Returns the error about a quantity as an error about a unit: the example is a unit without a number.
+fn unit_alone(error: &InputError) -> InputError {
+    let mut problem = error.problem().clone();
+    if let Problem::Quantity { example, .. } = &mut problem
+        && let Some((_, unit)) = example.split_once(' ')
+    {
+        *example = format!("\"{unit}");
+    }
+    InputError::new(problem, error.place().clone())
 }

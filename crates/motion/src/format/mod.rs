@@ -159,8 +159,8 @@ pub const FORMATS: &[Format] = &[
 
 /// Description of the readable formats in the error about a file of another format. A list of all names would hide
 /// the rest of the message.
-const KNOWN_FORMATS: &str = "a strong-motion record in a known format, such as PEER AT2, COSMOS, CSMIP, K-NET, ESM, SAC, \
-                             SEED, or plain columns of numbers";
+const KNOWN_FORMATS: &str = "a strong-motion record in a known format, such as PEER AT2, COSMOS, CSMIP, K-NET, ESM, \
+                             SAC, SEED, or plain columns of numbers";
 
 /// Known formats that are refused. These formats are tried before all others.
 const KNOWN_OTHERS: &[Format] = &[

@@ -65,8 +65,8 @@ impl Room {
         let key = if reader.has("range") { "range" } else { "values" };
         let Some(left) = self.values.checked_sub(values.len()) else {
             let message = format!(
-                "all factors of the study have more than {MOST_VALUES} values in total: give this factor fewer values, or \
-                 a `distribution` in a sampled design such as \"sobol\""
+                "all factors of the study have more than {MOST_VALUES} values in total: give this factor fewer values, \
+                 or a `distribution` in a sampled design such as \"sobol\""
             );
             return Err(reader.inconsistent(key, message));
         };

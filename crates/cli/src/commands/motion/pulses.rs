@@ -25,10 +25,16 @@ pub(super) struct Harmonic {
     #[command(flatten)]
     pub(super) size: Size,
     /// Number of cycles.
-    #[arg(long, value_name = "NUMBER", default_value_t = 10.0, allow_negative_numbers = true, value_parser = real("a number above 0, such as 10", |number| number > 0.0))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 10.0, allow_negative_numbers = true,
+        value_parser = real("a number above 0, such as 10", |number| number > 0.0)
+    )]
     pub(super) cycles: f64,
     /// Length of the ramp at each end, in cycles; without ramps, the velocity jumps at the start.
-    #[arg(long, value_name = "NUMBER", default_value_t = 2.0, allow_negative_numbers = true, value_parser = real("a number of 0 or more, such as 2", |number| number >= 0.0))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 2.0, allow_negative_numbers = true,
+        value_parser = real("a number of 0 or more, such as 2", |number| number >= 0.0)
+    )]
     pub(super) ramp_cycles: f64,
 }
 
@@ -38,7 +44,10 @@ pub(super) struct Repeated {
     #[command(flatten)]
     pub(super) size: Size,
     /// Number of main cycles.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(1..=1000_u32))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true,
+        value_parser = whole(1..=1000_u32)
+    )]
     pub(super) cycles: u32,
 }
 
@@ -48,7 +57,10 @@ pub(super) struct Wavelet {
     #[command(flatten)]
     pub(super) size: Size,
     /// Width of the wavelet, which determines the number of cycles.
-    #[arg(long, value_name = "NUMBER", default_value_t = 2.0, allow_negative_numbers = true, value_parser = real("a number above 0, such as 2", |number| number > 0.0))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 2.0, allow_negative_numbers = true,
+        value_parser = real("a number above 0, such as 2", |number| number > 0.0)
+    )]
     pub(super) gamma: f64,
     /// Phase angle of the wavelet.
     #[arg(long, value_name = "ANGLE", default_value = "0 deg", allow_hyphen_values = true)]

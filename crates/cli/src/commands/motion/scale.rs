@@ -28,11 +28,17 @@ pub(super) struct ScaleArgs {
     #[arg(long, value_name = "NAME", requires = "to")]
     of: Option<String>,
     /// Multiply the accelerations by this factor.
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = real("a number other than 0, such as 2", |number| number != 0.0))]
+    #[arg(
+        long, value_name = "NUMBER", allow_negative_numbers = true,
+        value_parser = real("a number other than 0, such as 2", |number| number != 0.0)
+    )]
     factor: Option<f64>,
     /// Length of a model divided by that of its prototype, such as 0.25: time is multiplied by the square root of this
     /// ratio, and accelerations remain unchanged. Applied after --to or --factor, if one of them is also given.
-    #[arg(long, value_name = "RATIO", allow_negative_numbers = true, value_parser = real("a ratio of lengths above 0, such as 0.25", |number| number > 0.0))]
+    #[arg(
+        long, value_name = "RATIO", allow_negative_numbers = true,
+        value_parser = real("a ratio of lengths above 0, such as 0.25", |number| number > 0.0)
+    )]
     froude: Option<f64>,
     #[command(flatten)]
     output: Output,

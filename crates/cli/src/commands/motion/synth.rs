@@ -41,7 +41,10 @@ struct Common {
 #[derive(Debug, clap::Args)]
 struct Seed {
     /// Seed of the random numbers; the same seed gives the same motion on every machine.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true,
+        value_parser = whole(0..=u64::MAX)
+    )]
     seed: u64,
 }
 
@@ -146,7 +149,10 @@ struct Noise {
 #[derive(Debug, clap::Args)]
 struct Source {
     /// Moment magnitude of the earthquake.
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = real("a moment magnitude from 1 to 9.5, such as 6.5", |number| (1.0..=9.5).contains(&number)))]
+    #[arg(
+        long, value_name = "NUMBER", allow_negative_numbers = true,
+        value_parser = real("a moment magnitude from 1 to 9.5, such as 6.5", |number| (1.0..=9.5).contains(&number))
+    )]
     magnitude: f64,
     /// Distance from source to site.
     #[arg(long, value_name = "LENGTH")]
@@ -184,7 +190,10 @@ struct Fault {
     #[arg(long, value_name = "TIME")]
     pulse_period: String,
     /// Width of the pulse, above 1; determines the number of cycles.
-    #[arg(long, value_name = "NUMBER", default_value_t = 2.0, allow_negative_numbers = true, value_parser = real("a number above 1, such as 2", |number| number > 1.0))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 2.0, allow_negative_numbers = true,
+        value_parser = real("a number above 1, such as 2", |number| number > 1.0)
+    )]
     gamma: f64,
     /// Phase of the pulse.
     #[arg(long, value_name = "ANGLE", default_value = "0 deg", allow_hyphen_values = true)]
@@ -193,7 +202,10 @@ struct Fault {
     #[arg(long, value_name = "TIME", default_value = "2 s")]
     start: String,
     /// Lowest frequency of the stochastic remainder, as a multiple of the pulse frequency.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, allow_negative_numbers = true, value_parser = real("a number above 0, such as 1", |number| number > 0.0))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 1.0, allow_negative_numbers = true,
+        value_parser = real("a number above 0, such as 1", |number| number > 0.0)
+    )]
     crossover: f64,
 }
 

@@ -29,7 +29,10 @@ pub(super) struct ReportArgs {
     #[arg(long, value_name = "FILE")]
     hazard: Option<PathBuf>,
     /// Number of years for which probabilities are given.
-    #[arg(long, value_name = "NUMBER", default_value_t = 50, requires = "hazard", allow_negative_numbers = true, value_parser = whole(1_u32..=10_000))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 50, requires = "hazard", allow_negative_numbers = true,
+        value_parser = whole(1_u32..=10_000)
+    )]
     years: u32,
     /// Folder for the page, in place of the folder of the study.
     #[arg(long, value_name = "DIR")]

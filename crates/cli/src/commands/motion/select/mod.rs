@@ -49,7 +49,10 @@ pub(super) struct SelectArgs {
     #[arg(long, value_name = "ACCELERATION", requires = "at", conflicts_with = "epsilon")]
     level: Option<String>,
     /// Sa at the period given with --at, as the number of standard deviations of ln Sa above the median.
-    #[arg(long, value_name = "NUMBER", requires = "at", allow_hyphen_values = true, value_parser = real("a number of standard deviations, such as 1.5 or -0.5", |_| true))]
+    #[arg(
+        long, value_name = "NUMBER", requires = "at", allow_hyphen_values = true,
+        value_parser = real("a number of standard deviations, such as 1.5 or -0.5", |_| true)
+    )]
     epsilon: Option<f64>,
     /// Shortest period to match.
     #[arg(long, value_name = "TIME", default_value = "0.05 s")]
@@ -72,7 +75,10 @@ pub(super) struct SelectArgs {
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = whole(1..=usize::MAX))]
     most_of_event: Option<usize>,
     /// Seed of the random spectra that are drawn from the target.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
+    #[arg(
+        long, value_name = "NUMBER", default_value_t = 1, allow_negative_numbers = true,
+        value_parser = whole(0..=u64::MAX)
+    )]
     seed: u64,
     /// Scenario that the study of the selected set runs.
     #[arg(long, value_name = "SCENARIO", default_value = "candia-8-barrels")]
