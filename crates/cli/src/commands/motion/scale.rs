@@ -66,7 +66,7 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
         after.notes.push(format!("scaled by {factor}; one factor for all components"));
     }
     if let Some(length) = args.froude {
-        froude(&mut after, length)?;
+        froude(&mut after, length);
     }
     let table = measures::before_after(&before, &after)?;
     super::change::finish(&target, &read, &after, table.lines())
@@ -100,7 +100,7 @@ fn factor_to(
     Ok((motion.scale_factor(measure, value)?, channel.name))
 }
 
-fn froude(record: &mut Record, length: f64) -> anyhow::Result<()> {
+fn froude(record: &mut Record, length: f64) {
     let time = length.sqrt();
     for channel in &mut record.channels {
         channel.time_step *= time;
@@ -111,7 +111,6 @@ fn froude(record: &mut Record, length: f64) -> anyhow::Result<()> {
         "Froude-scaled to {length} times the length: time and velocity times {time:.6}, displacement \
          times {length}, acceleration unchanged"
     ));
-    Ok(())
 }
 
 /// Parses `MEASURE=VALUE` to an intensity measure and its value in SI units.
