@@ -43,7 +43,7 @@ described! {
         pub outcome: OutcomeSummary = outcome(run),
         /// Every body except the ground; empty if the run is invalid.
         pub bodies: Vec<BodySummary> = bodies(run),
-        /// Demands on the stack until the first loss of seat.
+        /// Demands on the stack until the first loss of a seat.
         pub demands: Demands = demands(run, Span::UntilLoss),
         /// Demands on the stack over the whole run, falls included.
         pub demands_whole_run: Demands = demands(run, Span::WholeRun),
@@ -143,14 +143,14 @@ described! {
         pub peak_tilt: Option<f64> as "rad" = (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
         /// Largest normal stress at rest, as a force per meter of boundary.
         pub stress_at_rest: Option<f64> as "N/m" = stress.map(|s| s.at_rest.iter().copied().fold(0.0, f64::max)),
-        /// Largest normal stress until the first loss of seat, divided by the largest normal stress
+        /// Largest normal stress until the first loss of a seat, divided by the largest normal stress
         /// at rest; the two may occur at different points.
         pub stress_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::amplification),
-        /// Average of the largest normal stresses until the first loss of seat, divided by the
+        /// Average of the largest normal stresses until the first loss of a seat, divided by the
         /// average of the normal stresses at rest; both averages are taken over the boundary that
         /// is loaded at rest.
         pub mean_stress_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::mean_amplification),
-        /// Largest sum of all normal contact forces on the body until the first loss of seat,
+        /// Largest sum of all normal contact forces on the body until the first loss of a seat,
         /// divided by the sum at rest.
         pub total_force_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::total_amplification),
         /// Stress amplification over the whole run.
@@ -166,14 +166,14 @@ described! {
         pub name: String,
         /// Vertical force at rest.
         pub at_rest: f64 as "N",
-        /// Largest vertical force until the first loss of seat; zero if the two bodies touched only
+        /// Largest vertical force until the first loss of a seat; zero if the two bodies touched only
         /// later.
         pub peak_vertical: f64 as "N",
-        /// Time of the largest vertical force until the first loss of seat.
+        /// Time of the largest vertical force until the first loss of a seat.
         pub peak_vertical_at: f64 as "s",
-        /// Largest horizontal force until the first loss of seat.
+        /// Largest horizontal force until the first loss of a seat.
         pub peak_horizontal: f64 as "N",
-        /// Time of the largest horizontal force until the first loss of seat.
+        /// Time of the largest horizontal force until the first loss of a seat.
         pub peak_horizontal_at: f64 as "s",
         /// Largest vertical force over the whole run, falls included.
         pub peak_vertical_whole_run: f64 as "N",
@@ -373,7 +373,7 @@ impl AnySummary {
         either!(self, summary => summary.ensemble.as_ref())
     }
 
-    /// Returns the demands on the stack until the first loss of seat.
+    /// Returns the demands on the stack until the first loss of a seat.
     pub fn demands(&self) -> &Demands {
         either!(self, summary => &summary.demands)
     }

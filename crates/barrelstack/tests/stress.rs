@@ -1,4 +1,4 @@
-//! Envelopes of contact stress, largest forces before and after the first loss of seat, and other largest values that
+//! Envelopes of contact stress, largest forces before and after the first loss of a seat, and other largest values that
 //! pages state.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test")]
 

@@ -78,7 +78,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
          2014. The distance between neighboring stacks is the same within a row and between the rows. Each spacing \
          is computed with {variants} variants. In a variant, every stack has its own imperfections, and all stacks \
          share the unknown constants. A stack counts as knocked over if a body of another stack touched it before its \
-         first loss of seat. Shares are fractions of all stacks; their 95 % intervals are computed from the scatter \
+         first loss of a seat. Shares are fractions of all stacks; their 95 % intervals are computed from the scatter \
          between the variants, since the stacks of a room share their constants and their motion.\n"
     );
     println!(

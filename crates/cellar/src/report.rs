@@ -293,7 +293,7 @@ fn contacts(touched: &[&ShownStack]) -> Table {
             ("with body", "", &|one| body(one, 1)),
             ("at", "s", &|one| time(one.touched_at)),
             ("impulse before it falls", "N s", &|one| Cell::number(one.impulse, 2)),
-            ("first loss of seat", "s", &|one| time(one.falls_at)),
+            ("first loss of a seat", "s", &|one| time(one.falls_at)),
             ("outcome", "", &fate),
         ],
     )

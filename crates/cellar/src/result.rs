@@ -45,7 +45,7 @@ pub struct Touch {
     /// The body of the other stack, by its index in [`RoomRun::bodies`].
     pub by: usize,
     /// Impulse (N·s, sum of magnitudes) that all bodies of other stacks exert on the stack until its first loss of
-    /// seat, or over the whole run if it keeps its seats.
+    /// a seat, or over the whole run if it keeps its seats.
     pub impulse: f64,
 }
 
@@ -56,7 +56,7 @@ pub struct StackEnd {
     pub name: String,
     /// Outcome, defined as for a single stack.
     pub outcome: Outcome,
-    /// Time (s) of the first loss of seat, and index of the body in [`RoomRun::bodies`].
+    /// Time (s) of the first loss of a seat, and index of the body in [`RoomRun::bodies`].
     pub lost_seat: Option<(f64, usize)>,
     /// Time (s) at which the first barrel counted as fallen.
     pub first_fall: Option<f64>,

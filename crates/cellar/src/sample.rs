@@ -627,12 +627,12 @@ pub struct StackCase {
     pub valid: bool,
     /// `true` if the stack had fallen before the run; it does not fall again.
     pub fallen_before: bool,
-    /// Time (s) of the first loss of seat, if the stack falls.
+    /// Time (s) of the first loss of a seat, if the stack falls.
     pub fell_at: Option<f64>,
     /// `true` if the stack falls after a body of another stack touched it.
     pub knocked: bool,
     /// First contact with another stack: time (s), index of the other stack, and impulse (N·s) that other stacks exert
-    /// on this stack until its first loss of seat ([`Touch::impulse`](crate::Touch::impulse)).
+    /// on this stack until its first loss of a seat ([`Touch::impulse`](crate::Touch::impulse)).
     pub touched: Option<(f64, usize, f64)>,
     /// Names of the two bodies of the first contact: the body of this stack, and that of the other stack.
     pub touching: Option<[String; 2]>,

@@ -344,7 +344,7 @@ described! {
         pub name: String,
         /// What happens to the stack.
         pub fate: &'static str ["stands", "falls-by-itself", "knocked-over", "fallen-before"],
-        /// Time of the first loss of seat of the stack.
+        /// Time of the first loss of a seat of the stack.
         pub falls_at: Option<f64> as "s",
         /// Time of the first contact with another stack.
         pub touched_at: Option<f64> as "s",

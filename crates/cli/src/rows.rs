@@ -86,7 +86,7 @@ pub(crate) fn rows(
     if let Some(load) = demands.stave_utilization {
         let whole = summary.demands_whole_run.stave_utilization.filter(|whole| *whole > load);
         let falls = whole.map_or_else(String::new, |whole| {
-            format!(" until the first loss of seat, {:.0} % over the whole run", 100.0 * whole)
+            format!(" until the first loss of a seat, {:.0} % over the whole run", 100.0 * whole)
         });
         row("load on staves", format!("{:.0} % of their capacity{falls}", 100.0 * load));
     }

@@ -34,7 +34,7 @@ pub(crate) struct Run {
 /// time (s).
 type Peaks = ((f64, f64), (f64, f64));
 
-/// Forces between two bodies: name, force at rest (N), largest forces until the first loss of seat,
+/// Forces between two bodies: name, force at rest (N), largest forces until the first loss of a seat,
 /// and over the whole run.
 type JointFacts = (String, f64, Peaks, Peaks);
 
@@ -230,8 +230,8 @@ impl Run {
         rows(py, points.map(|(p, length)| [p.position.x, p.position.z, p.coordinate, *length]))
     }
 
-    /// Returns three stresses (N/m) for every point of an envelope: at rest, the largest until the first loss of seat,
-    /// and the largest over the whole run.
+    /// Returns three stresses (N/m) for every point of an envelope: at rest, the largest until the first loss of a
+    /// seat, and the largest over the whole run.
     fn envelope_stresses<'py>(
         slf: &Bound<'py, Self>,
         at: usize,

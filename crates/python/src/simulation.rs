@@ -337,7 +337,7 @@ impl Simulation {
         each!(&*lock(&self.running), one => one.ending()).map(barrelstack::watch::Ending::name)
     }
 
-    /// Time (s) of the first loss of seat; `None` if no body has left its seat.
+    /// Time (s) of the first loss of a seat; `None` if no body has left its seat.
     #[getter]
     fn collapse(&self) -> Option<f64> {
         match &*lock(&self.running) {
@@ -635,7 +635,7 @@ impl Simulations {
         self.numbers_of(py, |one| each!(one, one => one.time()))
     }
 
-    /// Returns the time (s) of the first loss of seat in every simulation; NaN for a simulation without one.
+    /// Returns the time (s) of the first loss of a seat in every simulation; NaN for a simulation without one.
     fn collapses<'py>(&self, py: Python<'py>) -> Numbers<'py> {
         self.numbers_of(py, |one| {
             let time = match one {

@@ -168,7 +168,7 @@ impl Envelope {
             "label",
             [SIDE + 33.0, 18.0],
             Anchor::Start,
-            language.fixed("largest until the first loss of seat"),
+            language.fixed("largest until the first loss of a seat"),
         );
         drawing.rect("static", [SIDE, 28.5], [26.0, 10.0]);
         drawing.text("label", [SIDE + 33.0, 38.0], Anchor::Start, language.fixed("at rest"));

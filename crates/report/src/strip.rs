@@ -86,7 +86,7 @@ impl Strip {
     /// Creates a strip of `count` panels that summarize the run.
     ///
     /// The panels are the first and the last frame and the most important events: falls are
-    /// preferred to losses of seat, losses of seat to all other events, and earlier events to later
+    /// preferred to losses of seats, losses of seats to all other events, and earlier events to later
     /// events. If there are too few events, instants in the middle of the longest gaps are added.
     pub fn of_run(scene: Arc<Scene>, count: usize) -> Self {
         let own = Arc::clone(&scene);

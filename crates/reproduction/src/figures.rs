@@ -35,7 +35,7 @@ pub(super) fn strip(
     Block::Figure(Figure::new(id, caption, Strip { scene: Arc::clone(scene), panels }))
 }
 
-/// Returns the instants of a collapse with their labels: at rest, and before, at and after the loss of seat.
+/// Returns the instants of a collapse with their labels: at rest, and before, at and after the loss of a seat.
 pub(super) fn moments(run: &Run) -> Vec<(f64, String)> {
     let mut panels = vec![(0.0, "at rest".to_owned())];
     let end = run.end_time;
@@ -56,7 +56,7 @@ pub(super) fn moments(run: &Run) -> Vec<(f64, String)> {
     panels
 }
 
-/// Returns the instants of the events of a collapse with their labels: the loss of seat, and the fall of each barrel
+/// Returns the instants of the events of a collapse with their labels: the loss of a seat, and the fall of each barrel
 /// of the top level.
 pub(super) fn events(run: &Run) -> Vec<(f64, String)> {
     let mut panels = vec![(0.0, "at rest".to_owned())];
@@ -177,7 +177,7 @@ pub(super) fn histories(run: &Run, id: &str, caption: &str) -> Block {
         .collect();
     let range = standing_range(run, &series);
     let times = [
-        (run.fates.collapse_time(), "loss of seat"),
+        (run.fates.collapse_time(), "loss of a seat"),
         (peak_velocity_time(run), "peak ground velocity"),
     ];
     let mark = |(at, label): (Option<f64>, &str)| Some(Mark { at: at?, label: label.into() });
@@ -194,7 +194,7 @@ pub(super) fn peak_velocity_time(run: &Run) -> Option<f64> {
 }
 
 /// Plots the normal stress along the boundary of the body that has the given `number` in the paper: the stress at rest,
-/// and the largest stress at each point until the first loss of seat. `None` if the run has no such barrel or rack.
+/// and the largest stress at each point until the first loss of a seat. `None` if the run has no such barrel or rack.
 pub(super) fn envelope(run: &Run, number: u32, id: &str, caption: &str) -> Option<Block> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
@@ -213,7 +213,8 @@ pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
 }
 
 /// Returns two lengths (m) along the boundary of the upper or lower half of a barrel: the length that is loaded at
-/// rest, and the length that is loaded at any time until the first loss of seat. `None` if the run has no such barrel.
+/// rest, and the length that is loaded at any time until the first loss of a seat. `None` if the run has no such
+/// barrel.
 pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     let envelope = run.stresses.of(body)?;

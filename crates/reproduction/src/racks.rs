@@ -83,7 +83,7 @@ pub(super) fn jobs(cases: &PaperCases) -> Vec<Job> {
             jobs.push(job("six barrels", six));
         }
         let eight = with(&brief(&cases.eight, 1.0), change);
-        // The mode is determined at the first loss of seat.
+        // The mode is determined at the first loss of a seat.
         jobs.extend(ensemble::jobs(&brief(&eight, 0.05)));
         jobs.push(job("eight barrels", eight));
     }

@@ -118,7 +118,7 @@ fn six(results: &Results) -> Vec<Comparison> {
             outcome.time,
             Some((8.5, 12.0, "8.5 to 12 s")),
             format!(
-                "Time of the first loss of seat.{}",
+                "Time of the first loss of a seat.{}",
                 reasons(results.study(Subject::Six), 10.0)
             ),
         ),
@@ -141,7 +141,7 @@ fn six(results: &Results) -> Vec<Comparison> {
         stress::average(&results.six.run),
         STRESS_BAND,
         "The paper reads an average from the envelope of barrel 1; here, the amplification is the mean of the largest \
-         stresses until the first loss of seat, divided by the mean of the stress at rest; both means are taken over \
+         stresses until the first loss of a seat, divided by the mean of the stress at rest; both means are taken over \
          the boundary that is loaded at rest. This definition follows the words of the paper; another definition in \
          the rows below comes nearer to the published value.",
     ));
@@ -173,7 +173,7 @@ fn six(results: &Results) -> Vec<Comparison> {
         demands.base_slip_residual.map(|slip| 100.0 * slip.abs()),
         Some((0.0, 5.0, "at most 5 cm")),
         format!(
-            "At the end of the run. While the stack stands the rack slips by {} cm at most; at the loss of seat, its \
+            "At the end of the run. While the stack stands the rack slips by {} cm at most; at the loss of a seat, its \
              slip is {} cm. The residual slip comes from the fall of the upper levels, which is sensitive to small \
              changes.",
             centimeters(demands.base_slip_peak),
@@ -322,7 +322,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
             demands.stress_amplification,
             STRESS_BAND,
             "The paper compares maximum stresses. Here, the amplification is the largest stress \
-             until the first loss of seat divided by the largest stress at rest, for the bottom \
+             until the first loss of a seat divided by the largest stress at rest, for the bottom \
              barrel with the greater ratio. The rows below show all other definitions.",
         ),
     ];
@@ -368,7 +368,7 @@ fn scales(results: &Results) -> Vec<Comparison> {
             },
             apart < 1e-3 && full.outcome.first == half.outcome.first,
             "Largest distance between the positions of a body in the two runs, scaled to full scale, until the \
-             first loss of seat. The paper compares \
+             first loss of a seat. The paper compares \
              its model with photographs of the test; here both runs are of the model, and similitude makes \
              them equal except for rounding.",
         ),

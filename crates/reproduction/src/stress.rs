@@ -14,9 +14,9 @@ pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
     run.stresses.of(body)
 }
 
-/// Returns the largest vertical force on barrel 1 until the first loss of seat, divided by the force at rest. The force
-/// comes from the rack above the barrel if `above` is `true`, and otherwise from the rack below it. `None` if there is
-/// no such rack.
+/// Returns the largest vertical force on barrel 1 until the first loss of a seat, divided by the force at rest. The
+/// force comes from the rack above the barrel if `above` is `true`, and otherwise from the rack below it. `None` if
+/// there is no such rack.
 fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     let body = envelope(run, 1)?.body;
     let joint =
@@ -72,8 +72,8 @@ const DEFINITIONS: [Definition; 7] = [
 
 /// Returns the mean of the stress envelope of barrel 1, divided by the mean stress at rest.
 ///
-/// The envelope is the largest stress at each point until the first loss of seat. Both means are taken over the part of
-/// the boundary that is loaded at rest.
+/// The envelope is the largest stress at each point until the first loss of a seat. Both means are taken over the part
+/// of the boundary that is loaded at rest.
 pub(super) fn average(run: &Run) -> Option<f64> {
     envelope(run, 1)?.mean_amplification()
 }
@@ -89,7 +89,7 @@ pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Com
         difference: None,
         band: None,
         agreement: Agreement::NotCompared,
-        why: format!("{meaning}; evaluated until the first loss of seat"),
+        why: format!("{meaning}; evaluated until the first loss of a seat"),
     };
     DEFINITIONS.into_iter().map(row).collect()
 }

@@ -30,7 +30,7 @@ impl Subject {
     /// Returns the name, for captions, of the event whose time is compared with the paper's time.
     pub(super) fn clock(self) -> &'static str {
         match self {
-            Self::Six | Self::Along => "first loss of seat",
+            Self::Six | Self::Along => "first loss of a seat",
             Self::Eight => "first fall",
         }
     }

@@ -1,4 +1,4 @@
-//! Outcome of every body in three dimensions: loss of seat and its direction, fall, slip, and tilt.
+//! Outcome of every body in three dimensions: loss of a seat and its direction, fall, slip, and tilt.
 
 use std::sync::Arc;
 
@@ -64,7 +64,7 @@ impl Heading {
 pub struct Fate {
     /// Position at rest (m), relative to the ground.
     pub rest: Vec3,
-    /// Time (s), kind and direction of the loss of seat; `None` if the body has not lost its seat.
+    /// Time (s), kind and direction of the loss of a seat; `None` if the body has not lost its seat.
     pub left_seat: Option<(f64, Loss, Heading)>,
     /// Time (s) at which the drop of the body exceeded the threshold that counts as a fall; `None` if the body has not
     /// fallen.
@@ -134,7 +134,7 @@ pub struct Fates {
     /// For every rack, the least cosine of its tilt so far.
     least_upright: Vec<f64>,
     all: Vec<Fate>,
-    /// Time (s) of the first loss of seat, and the body that lost its seat; `None` if no body has lost its seat.
+    /// Time (s) of the first loss of a seat, and the body that lost its seat; `None` if no body has lost its seat.
     collapse: Option<(f64, BodyId)>,
     /// Time (s) at which the first barrel counted as fallen; `None` if no barrel has fallen.
     first_fall: Option<f64>,
@@ -164,8 +164,8 @@ impl Fates {
         &self.all
     }
 
-    /// Returns the time (s) of the first loss of seat, and the body that lost its seat; `None` if no body has lost its
-    /// seat.
+    /// Returns the time (s) of the first loss of a seat, and the body that lost its seat; `None` if no body has lost
+    /// its seat.
     pub fn collapse(&self) -> Option<(f64, BodyId)> {
         self.collapse
     }
@@ -251,7 +251,8 @@ impl Fates {
         }
     }
 
-    /// Returns the kind and the direction of the loss of seat; `None` if the body is on its seat in the current state.
+    /// Returns the kind and the direction of the loss of a seat; `None` if the body is on its seat in the current
+    /// state.
     fn lost(&self, i: BodyId, slips: &[Vec3]) -> Option<(Loss, Heading)> {
         let part = &self.stack.parts[i];
         let fate = &self.all[i];

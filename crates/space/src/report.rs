@@ -98,7 +98,7 @@ pub fn document(answer: &Answer) -> Document {
             ]);
             let table = interface_table(
                 "Force on the upper body, or on the body that is named first: the value of largest magnitude until \
-                 the first loss of seat, and the value of largest magnitude over the whole run, falls \
+                 the first loss of a seat, and the value of largest magnitude over the whole run, falls \
                  included. Each horizontal force is the resultant of its two horizontal components.",
                 &summary.interfaces,
             );

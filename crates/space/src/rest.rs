@@ -38,7 +38,7 @@ impl Rest {
     }
 
     /// Records an accepted state; returns `true` if all bodies have come to rest. `collapsed` is `true` after a loss of
-    /// seat.
+    /// a seat.
     pub(crate) fn observe(&mut self, state: &State<Spatial>, collapsed: bool) -> bool {
         self.observe_bodies(state.time, (&state.poses, &state.twists), collapsed)
     }

@@ -13,7 +13,7 @@ use crate::stack::Stack;
 struct Press {
     /// Force at rest (N).
     at_rest: f64,
-    /// Largest force until the first loss of seat (N).
+    /// Largest force until the first loss of a seat (N).
     peak: f64,
     /// Largest force over the whole run (N).
     peak_whole_run: f64,

@@ -67,7 +67,7 @@ pub fn toward(heading: Heading) -> &'static str {
     }
 }
 
-/// Describes a loss of seat, such as "B3.1 leaves its cradle".
+/// Describes a loss of a seat, such as "B3.1 leaves its cradle".
 pub(crate) fn leaves(name: &str, loss: Loss) -> String {
     match loss {
         Loss::Displaced => format!("{name} leaves its cradle"),
@@ -77,7 +77,7 @@ pub(crate) fn leaves(name: &str, loss: Loss) -> String {
     }
 }
 
-/// Returns the sentences that follow the headline: the statistics of the variants, the first loss of seat, and the
+/// Returns the sentences that follow the headline: the statistics of the variants, the first loss of a seat, and the
 /// outcomes of the devices.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     let mut sentences: Vec<String> = summary.ensemble.iter().filter_map(measure).collect();

@@ -149,7 +149,7 @@ impl Described for Demands {
             schema: <Option<f64> as Described>::schema,
         };
         let fields: Vec<Field> = DEMANDS.iter().map(field).collect();
-        let meaning = "Demands on the stack until the first loss of seat or over the whole run, depending on the \
+        let meaning = "Demands on the stack until the first loss of a seat or over the whole run, depending on the \
             field that contains them. The slips at the collapse and at the end of the run are the same in both.";
         described::object(objects, "Demands", meaning, &fields)
     }

@@ -50,7 +50,7 @@ pub struct Run {
     /// Largest forces and failure of each force element, in the order of the elements in the model.
     pub elements: Vec<ElementFate>,
     /// Normal contact stress along the boundary of every barrel and rack: at rest, and the largest values until the
-    /// first loss of seat and over the whole run.
+    /// first loss of a seat and over the whole run.
     pub stresses: Stresses,
     /// Frames and histories.
     pub recording: Recording,

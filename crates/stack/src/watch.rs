@@ -152,7 +152,7 @@ impl Watch {
         scratch: &Scratch<Planar>,
         energy: &EnergyLedger<Planar>,
     ) {
-        // The state in which the first loss of seat is found still counts as standing.
+        // The state in which the first loss of a seat is found still counts as standing.
         let standing = self.fates.stands();
         self.fates.observe(state, scratch);
         self.elements.observe(state, standing, scratch);

@@ -19,11 +19,11 @@ pub struct Case {
     /// Name of each barrel, and the time (s) at which it counts as fallen; `None` for a barrel that
     /// did not fall.
     falls: Vec<(String, Option<f64>)>,
-    /// Largest displacement of the top barrels relative to the ground until the first loss of seat, divided by the
+    /// Largest displacement of the top barrels relative to the ground until the first loss of a seat, divided by the
     /// height of the stack; `None` if the variant has no valid result or the scenario has no stack.
     drift: Option<f64>,
-    /// Largest vertical force between a barrel and a rack until the first loss of seat, divided by the capacity of the
-    /// staves; `None` if the variant has no valid result or the scenario has no rack.
+    /// Largest vertical force between a barrel and a rack until the first loss of a seat, divided by the capacity of
+    /// the staves; `None` if the variant has no valid result or the scenario has no rack.
     stave_utilization: Option<f64>,
     /// The first warning about the result; `None` if there are no warnings.
     warning: Option<String>,

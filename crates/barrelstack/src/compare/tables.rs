@@ -100,7 +100,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
     table
 }
 
-/// Tabulates the demands on each stack until its first loss of seat.
+/// Tabulates the demands on each stack until its first loss of a seat.
 pub(super) fn demands(sides: &[Side]) -> Table {
     let mut table = table(
         "Demands on each stack until its first loss of a seat, except the slip at the end of the run. The report of a \

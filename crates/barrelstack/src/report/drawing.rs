@@ -121,7 +121,7 @@ pub fn legend(scene: &Scene) -> String {
 /// of the run.
 const STILL: f64 = 1e-3;
 
-/// Returns the instant that the player shows first: the first loss of seat or, if all seats are kept, the largest
+/// Returns the instant that the player shows first: the first loss of a seat or, if all seats are kept, the largest
 /// sideways or upward displacement of a body.
 ///
 /// Returns `None` if the run is invalid, interrupted or not judged, or if all seats are kept and no body moves farther

@@ -379,7 +379,7 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
     }
     let caption = format!(
         "Force on the upper body, or on the body named first if neither rests on the other; positive up and to the right. \
-         Two forces are given: the one of largest magnitude until the first loss of seat, and the one of largest \
+         Two forces are given: the one of largest magnitude until the first loss of a seat, and the one of largest \
          magnitude over the whole run, falls included.{}",
         slice(run)
     );

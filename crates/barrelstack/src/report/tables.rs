@@ -10,10 +10,10 @@ fn kilonewtons(value: f64) -> Cell {
     Cell::Measured(1e-3 * value, 2)
 }
 
-/// Tabulates the demands on a stack until the first loss of seat, and over the whole run.
+/// Tabulates the demands on a stack until the first loss of a seat, and over the whole run.
 pub fn demand_table(until_loss: &Demands, whole_run: &Demands) -> Table {
     Table::of(
-        "Demands on the stack until the first loss of seat, and over the whole run, falls included.",
+        "Demands on the stack until the first loss of a seat, and over the whole run, falls included.",
         DEMANDS.iter().filter_map(|demand| {
             Some((demand, demand.shown(until_loss)?, demand.shown(whole_run)))
         }),
@@ -61,7 +61,7 @@ pub fn interface_table(caption: &str, interfaces: &[JointSummary]) -> Table {
 pub fn device_table(Device { words, elements }: &Device) -> Vec<Block> {
     let table = Table::of(
         format!(
-            "Largest {} of every {} until the first loss of seat, and over the whole run. Left and right are as in \
+            "Largest {} of every {} until the first loss of a seat, and over the whole run. Left and right are as in \
              the picture.",
             words.force, words.one
         ),

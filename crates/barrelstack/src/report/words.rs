@@ -80,7 +80,7 @@ fn single(run: &Run, summary: &Summary, plane: Option<View>, noun: &str) -> Stri
     }
 }
 
-/// Formats the largest utilization of staves until the first loss of seat, in percent; `None` if it is at most 100 %.
+/// Formats the largest utilization of staves until the first loss of a seat, in percent; `None` if it is at most 100 %.
 fn crushed(summary: &Summary) -> Option<String> {
     let load = summary.demands.stave_utilization.filter(|load| *load > 1.0)?;
     Some(format!("{:.0} %", 100.0 * load))

@@ -30,7 +30,7 @@ pub struct ElementSummary {
     words: &'static Words,
     /// Name of the element, such as "B5.1-R5 left".
     pub name: String,
-    /// Force (N) with the largest magnitude until the first loss of seat.
+    /// Force (N) with the largest magnitude until the first loss of a seat.
     pub peak: f64,
     /// Time (s) of the force `peak`.
     pub peak_at: f64,
@@ -119,8 +119,11 @@ impl Described for Devices {
                     "type": "string",
                     "description": "Names of the bodies that the element joins, and the position of the element."
                 },
-                (format!("peak_{force}")): number("N", &format!("The {force} with the largest magnitude until the first loss of seat.")),
-                (format!("peak_{force}_at")): number("s", "Time of the largest value until the first loss of seat."),
+                (format!("peak_{force}")): number(
+                    "N",
+                    &format!("The {force} with the largest magnitude until the first loss of a seat."),
+                ),
+                (format!("peak_{force}_at")): number("s", "Time of the largest value until the first loss of a seat."),
                 (format!("peak_{force}_whole_run")): number("N", &format!("The {force} with the largest magnitude over the whole run.")),
                 (format!("peak_{force}_whole_run_at")): number("s", "Time of the largest value over the whole run."),
                 (format!("{broken}_at")): at,

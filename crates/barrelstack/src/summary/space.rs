@@ -33,7 +33,7 @@ described! {
         pub outcome: OutcomeInSpace,
         /// All bodies except the ground; empty where the run is invalid.
         pub bodies: Vec<BodyInSpace>,
-        /// Demands on the stack until the first loss of seat.
+        /// Demands on the stack until the first loss of a seat.
         pub demands: Demands,
         /// Demands on the stack over the whole run, falls included.
         pub demands_whole_run: Demands,
@@ -129,25 +129,26 @@ described! {
         pub velocity: [f64; 3] as "m/s",
         /// Angular velocity about x, y, z at the end of the run.
         pub spin: [f64; 3] as "rad/s",
-        /// Largest horizontal displacement relative to the ground before the first loss of seat.
+        /// Largest horizontal displacement relative to the ground before the first loss of a seat.
         pub peak_displacement: f64 as "m",
         /// Largest horizontal displacement, in any direction, relative to the supports of the body, before the first
-        /// loss of seat.
+        /// loss of a seat.
         pub peak_slip: f64 as "m",
         /// Largest displacement across the barrels, relative to the supports of the body, before the first loss of
-        /// seat.
+        /// a seat.
         pub peak_slip_across: f64 as "m",
-        /// Largest displacement along the barrels, relative to the supports of the body, before the first loss of seat.
+        /// Largest displacement along the barrels, relative to the supports of the body, before the first loss of a
+        /// seat.
         /// It may occur at another time than the largest displacement across the barrels.
         pub peak_slip_along: f64 as "m",
-        /// Largest rise above the position at rest before the first loss of seat.
+        /// Largest rise above the position at rest before the first loss of a seat.
         pub peak_uplift: f64 as "m",
-        /// Largest tilt before the first loss of seat; racks only.
+        /// Largest tilt before the first loss of a seat; racks only.
         pub peak_tilt: Option<f64> as "rad",
-        /// Largest contact force on the body before the first loss of seat, divided by the largest contact force at
+        /// Largest contact force on the body before the first loss of a seat, divided by the largest contact force at
         /// rest.
         pub stress_amplification: Option<f64> as "1",
-        /// Sum of the largest contact forces on the body before the first loss of seat, divided by the sum of the
+        /// Sum of the largest contact forces on the body before the first loss of a seat, divided by the sum of the
         /// contact forces at rest.
         pub mean_stress_amplification: Option<f64> as "1",
     }
@@ -177,7 +178,7 @@ described! {
 }
 
 impl Directions {
-    /// Returns the number of variants whose first loss of seat is across the barrels, and the number of variants in
+    /// Returns the number of variants whose first loss of a seat is across the barrels, and the number of variants in
     /// which it is along the barrels.
     pub fn first(&self) -> [u32; 2] {
         [self.first_right + self.first_left, self.first_away + self.first_near]

@@ -208,8 +208,8 @@ impl AsItIs<'_> {
         self.results.iter().map(|all| all.iter().map(|one| verdict(one)).collect()).collect()
     }
 
-    /// Returns the indices of the given number of variants, in the order of their first loss of seat in any plane, the
-    /// earliest first.
+    /// Returns the indices of the given number of variants, in the order of their first loss of a seat in any plane,
+    /// the earliest first.
     fn order(&self, variants: usize) -> Vec<u32> {
         let lost = |variant: &u32| {
             let results = self.results.iter().filter_map(|all| all.get(*variant as usize));

@@ -12,10 +12,10 @@ use super::observed::{Observed, Time};
 pub struct Errors {
     /// Standard deviation (s) of a time read from a video.
     pub reading: f64,
-    /// Increase of the standard deviation of a time, in seconds per second after the first loss of seat.
+    /// Increase of the standard deviation of a time, in seconds per second after the first loss of a seat.
     ///
     /// The course of a collapse departs more and more from that of any model. For example, in a stack of eight
-    /// barrels, a barrel that falls two seconds after the loss of seat falls half a second earlier or later if one
+    /// barrels, a barrel that falls two seconds after the loss of a seat falls half a second earlier or later if one
     /// contact parameter changes by 10 %.
     pub growth: f64,
     /// Probability that an observed mode, first barrel or time differs from the simulated one for a reason outside the
@@ -34,7 +34,7 @@ impl Errors {
     ///
     /// Let ε = `other`. An observed mode or barrel has the probability 1 − ε if it agrees with the simulated
     /// one, and ε otherwise. For a simulated time s, an observed time t has the probability density (1 − ε)
-    /// N(t; s, σ²) + ε/T, where σ = reading + growth · (time since the loss of seat) and T is the duration of
+    /// N(t; s, σ²) + ε/T, where σ = reading + growth · (time since the loss of a seat) and T is the duration of
     /// the observation.
     pub(super) fn log_likelihood(&self, observed: &Observed, course: &Course) -> f64 {
         let label = |same: bool| math::log(if same { 1.0 - self.other } else { self.other });

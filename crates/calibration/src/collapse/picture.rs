@@ -76,7 +76,7 @@ fn times(
             observed.push(time);
         };
         if let Some(time) = test.loss {
-            row("loss of seat", time, &loss);
+            row("loss of a seat", time, &loss);
         }
         if let Some(time) = test.first_fall {
             row("first fall", time, &first);

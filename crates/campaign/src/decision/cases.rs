@@ -114,7 +114,7 @@ pub struct JudgedCase {
     pub wines: Box<[f64]>,
     /// Volume of wine (m³) in all barrels of the stack.
     pub wine: f64,
-    /// Peak drift ratio of the top of the stack before any loss of seat; NaN if unknown.
+    /// Peak drift ratio of the top of the stack before any loss of a seat; NaN if unknown.
     drift: f64,
     /// Intensities (SI) of the case, one for each measure in [`Cases::measures`]; NaN if unknown.
     intensities: Box<[f64]>,
@@ -132,7 +132,7 @@ impl JudgedCase {
         self.intensities.get(measure).copied().filter(|value| !value.is_nan())
     }
 
-    /// Returns the peak drift ratio of the top of the stack before any loss of seat; `None` if unknown.
+    /// Returns the peak drift ratio of the top of the stack before any loss of a seat; `None` if unknown.
     pub fn drift(&self) -> Option<f64> {
         Some(self.drift).filter(|value| !value.is_nan())
     }

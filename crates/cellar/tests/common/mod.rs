@@ -25,7 +25,7 @@ pub(crate) fn on(threads: usize, room: &Room) -> RoomRun {
     run(room, &settings, &mut |_| ControlFlow::Continue(())).unwrap()
 }
 
-/// Name of a stack, bits of its poses, of the impulse on it and of its loss of seat, and whether it was knocked over.
+/// Name of a stack, bits of its poses, of the impulse on it and of its loss of a seat, and whether it was knocked over.
 type StackBits = (String, Vec<[u64; 14]>, Option<u64>, Option<u64>, bool);
 
 /// Returns everything of a run that must not depend on threads or on the order of the stacks, stack by stack in the

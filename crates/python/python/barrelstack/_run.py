@@ -181,9 +181,9 @@ class Force(NamedTuple):
 
     #: Vertical force at rest (N).
     at_rest: float
-    #: Largest vertical force (N) until the first loss of seat, and its time (s).
+    #: Largest vertical force (N) until the first loss of a seat, and its time (s).
     peak_vertical: tuple[float, float]
-    #: Largest horizontal force (N) until the first loss of seat, and its time (s).
+    #: Largest horizontal force (N) until the first loss of a seat, and its time (s).
     peak_horizontal: tuple[float, float]
     #: Largest vertical force (N) over the whole run, falls included, and its time (s).
     peak_vertical_whole_run: tuple[float, float]
@@ -214,7 +214,7 @@ class Envelope(NamedTuple):
     length: NDArray[np.float64]
     #: Stress at rest (N/m): a view without a copy.
     at_rest: NDArray[np.float64]
-    #: Largest stress until the first loss of seat (N/m): a view without a copy.
+    #: Largest stress until the first loss of a seat (N/m): a view without a copy.
     peak: NDArray[np.float64]
     #: Largest stress over the whole run (N/m): a view without a copy.
     peak_whole_run: NDArray[np.float64]
@@ -289,7 +289,7 @@ class Run(Pictured[_native.Run]):
 
     @property
     def demands(self) -> Demands:
-        """Demands on the stack until the first loss of seat."""
+        """Demands on the stack until the first loss of a seat."""
         return Demands(self.summary["demands"])
 
     @property
@@ -306,7 +306,7 @@ class Run(Pictured[_native.Run]):
     def forces(self) -> dict[str, Force]:
         """Forces between bodies that rest on each other, by names such as ``"R1 on ground"``.
 
-        Includes bodies that met before the first loss of seat, such as ``"R1.1 against R1.2"``.
+        Includes bodies that met before the first loss of a seat, such as ``"R1.1 against R1.2"``.
         """
         facts = self._native.joints()
         return {

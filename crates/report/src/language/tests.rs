@@ -117,6 +117,13 @@ fn every_line_of_the_catalog_is_an_entry_with_equal_placeholders_and_numbers() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+#[test]
+fn one_event_has_one_name() {
+    let sources = SPANISH.lines().filter_map(catalog::entry).map(|(source, _)| source);
+    let other: Vec<&str> = sources.filter(|source| source.contains("loss of seat")).collect();
+    assert!(other.is_empty(), "should be \"loss of a seat\": {other:#?}");
+}
+
 /// Returns strings that pages contain in addition to those of a document.
 fn frame() -> Vec<String> {
     let fixed = [
@@ -145,7 +152,7 @@ fn frame() -> Vec<String> {
         "program",
         "start",
         "end",
-        "largest until the first loss of seat",
+        "largest until the first loss of a seat",
         "at rest",
         "amplification 2.1",
         "line load: 20 kN/m",

@@ -62,7 +62,7 @@ pub struct CaseResult {
     pub fall_wine: Vec<f64>,
     /// Volume of wine (m³) in all barrels of the stack.
     pub wine: f64,
-    /// Demands on the stack until the first loss of seat; all `None` if the case could not run or is invalid.
+    /// Demands on the stack until the first loss of a seat; all `None` if the case could not run or is invalid.
     pub demands: Demands,
     /// Demands over the whole run.
     pub demands_whole_run: Demands,

@@ -163,25 +163,25 @@ columns! {
     fall_wine "m3": Outcome Text |case| Some(list(&case.fall_wine));
     /// wine in all barrels of the stack
     stack_wine "m3": Outcome Number |case| case.outcome.is_ok().then_some(case.wine);
-    /// largest displacement of the top divided by the height of the stack, until the first loss of seat
+    /// largest displacement of the top divided by the height of the stack, until the first loss of a seat
     top_drift_ratio "": Demand Number |case| case.demands.top_drift_ratio;
-    /// largest slip of the bottom rack until the first loss of seat
+    /// largest slip of the bottom rack until the first loss of a seat
     base_slip_peak "m": Demand Number |case| case.demands.base_slip_peak;
     /// slip of the bottom rack at the end of the case
     base_slip_residual "m": Demand Number |case| case.demands.base_slip_residual;
-    /// largest tilt of a rack until the first loss of seat
+    /// largest tilt of a rack until the first loss of a seat
     rack_tilt_peak "rad": Demand Number |case| case.demands.rack_tilt_peak;
-    /// largest displacement of a rack on its supports until the first loss of seat
+    /// largest displacement of a rack on its supports until the first loss of a seat
     rack_walk_peak "m": Demand Number |case| case.demands.rack_walk_peak;
-    /// largest normal stress on a bottom barrel divided by the largest stress at rest, until the first loss of seat
+    /// largest normal stress on a bottom barrel divided by the largest stress at rest, until the first loss of a seat
     stress_amplification "": Demand Number |case| case.demands.stress_amplification;
     /// like stress_amplification, but each stress is an average over the part of the boundary that is loaded at rest
     mean_stress_amplification "": Demand Number |case| case.demands.mean_stress_amplification;
-    /// largest vertical force between two bodies until the first loss of seat
+    /// largest vertical force between two bodies until the first loss of a seat
     vertical_force_peak "N": Demand Number |case| force(case, |joint| joint.until_loss.vertical.0);
-    /// largest horizontal force between two bodies until the first loss of seat
+    /// largest horizontal force between two bodies until the first loss of a seat
     horizontal_force_peak "N": Demand Number |case| force(case, |joint| joint.until_loss.horizontal.0);
-    /// largest vertical force between a barrel and a rack, divided by the capacity of the staves, until the first loss of seat
+    /// largest vertical force between a barrel and a rack until the first loss of a seat, divided by the stave capacity
     stave_utilization "": Demand Number |case| case.demands.stave_utilization;
     /// top_drift_ratio over the whole run, including falls
     top_drift_ratio_whole_run "": Outcome Number |case| case.demands_whole_run.top_drift_ratio;

@@ -6,7 +6,7 @@ use barrelstack_dynamics::{Scratch, Space, State};
 /// Largest forces of one force element, and its failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElementFate {
-    /// Force (N) of the largest magnitude until the first loss of seat, and its time (s).
+    /// Force (N) of the largest magnitude until the first loss of a seat, and its time (s).
     pub peak: (f64, f64),
     /// Force (N) of the largest magnitude over the whole run, and its time (s).
     pub peak_whole_run: (f64, f64),

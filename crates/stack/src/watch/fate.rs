@@ -1,4 +1,4 @@
-//! Outcome for every body: loss of seat, fall, slip and tilt.
+//! Outcome for every body: loss of a seat, fall, slip and tilt.
 
 use barrelstack_dynamics::lanes::PerLane;
 use barrelstack_dynamics::real::{Mask, Real};
@@ -37,7 +37,7 @@ impl Thresholds {
     }
 }
 
-/// Kind of a loss of seat.
+/// Kind of a loss of a seat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loss {
     /// A barrel moved too far from its position in the rack.
@@ -50,12 +50,12 @@ pub enum Loss {
     Dropped,
 }
 
-/// Outcome of a run for one body: loss of seat, fall, and largest motions.
+/// Outcome of a run for one body: loss of a seat, fall, and largest motions.
 ///
-/// The collapse is the first loss of seat of any body of the stack.
+/// The collapse is the first loss of a seat of any body of the stack.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fate {
-    /// Time (s) and kind of the loss of seat; `None` if the body kept its seat.
+    /// Time (s) and kind of the loss of a seat; `None` if the body kept its seat.
     pub left_seat: Option<(f64, Loss)>,
     /// Time (s) at which the drop of the body exceeded the threshold of a fall; `None` if the body did not fall.
     pub fell_at: Option<f64>,
@@ -89,7 +89,7 @@ pub struct Fate {
     pub whole_run: PeakMotion,
 }
 
-/// Largest motions of a body over all steps of a run, or over the steps until the first loss of seat.
+/// Largest motions of a body over all steps of a run, or over the steps until the first loss of a seat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeakMotion<R: Real = f64> {
     /// Largest displacement (m) along `x` relative to the ground.
@@ -103,7 +103,7 @@ pub struct PeakMotion<R: Real = f64> {
 lanewise!(struct PeakMotion<R> { displacement, slip, tilt });
 
 impl Fate {
-    /// Returns the largest motions until the first loss of seat.
+    /// Returns the largest motions until the first loss of a seat.
     pub fn until_loss(&self) -> PeakMotion {
         let Self { peak_displacement, peak_slip, peak_tilt, .. } = *self;
         PeakMotion { displacement: peak_displacement, slip: peak_slip, tilt: peak_tilt }
@@ -157,7 +157,7 @@ struct Followed<R: Real> {
     most_tilt: R,
     /// Time (s) at which the body left its seat; infinite until then.
     left_seat: R,
-    /// Kind of the loss of seat.
+    /// Kind of the loss of a seat.
     loss: PerLane<Loss>,
     /// Time (s) at which the body fell; infinite until then.
     fell_at: R,

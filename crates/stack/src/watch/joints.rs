@@ -1,4 +1,4 @@
-//! Forces between bodies of a stack: at rest, and their peaks until the first loss of seat and over the whole run.
+//! Forces between bodies of a stack: at rest, and their peaks until the first loss of a seat and over the whole run.
 
 use barrelstack_dynamics::forces::PairForce;
 use barrelstack_dynamics::lanes::Lanewise;
@@ -21,7 +21,7 @@ pub struct Joint<R: Real = f64> {
     pub force: Vec2<R>,
     /// Vertical force (N) on the upper body at rest.
     pub at_rest: R,
-    /// Largest forces until the first loss of seat.
+    /// Largest forces until the first loss of a seat.
     pub until_loss: PeakForces<R>,
     /// Largest forces over the whole run, including falls.
     pub whole_run: PeakForces<R>,
@@ -256,7 +256,7 @@ impl<R: Real> Joint<R> {
     }
 
     /// Replaces each peak by the current force component and its time (s) in those lanes in which the component is
-    /// larger in magnitude. The peaks until the first loss of seat are replaced in `standing` lanes only.
+    /// larger in magnitude. The peaks until the first loss of a seat are replaced in `standing` lanes only.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn raise(&mut self, time: R, standing: R::Mask) {

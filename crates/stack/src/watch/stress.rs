@@ -1,5 +1,5 @@
 //! Normal contact stress along the boundary of every barrel and rack: at rest, and its largest values until the first
-//! loss of seat and over the whole run.
+//! loss of a seat and over the whole run.
 //!
 //! In a planar model, stress is force per length of boundary (N/m). Every contact loads both of its bodies over the
 //! tributary length of its contact element. For a node, this length is half the distance to each neighbor. For a
@@ -50,7 +50,7 @@ pub struct StressEnvelope {
     pub closed: bool,
     /// Stress (N/m) at rest, at each point.
     pub at_rest: Vec<f64>,
-    /// Largest stress (N/m) until the first loss of seat, at each point.
+    /// Largest stress (N/m) until the first loss of a seat, at each point.
     pub peak: Vec<f64>,
     /// Largest stress (N/m) over the whole run, including falls, at each point.
     pub peak_whole_run: Vec<f64>,
@@ -65,7 +65,7 @@ pub struct StressEnvelope {
 pub struct TotalForce {
     /// Sum of the normal forces at rest (N).
     pub at_rest: f64,
-    /// Largest sum of the normal forces until the first loss of seat (N).
+    /// Largest sum of the normal forces until the first loss of a seat (N).
     pub peak: f64,
     /// Largest sum of the normal forces over the whole run (N).
     pub peak_whole_run: f64,
@@ -97,7 +97,7 @@ impl StressEnvelope {
         self.at_rest.iter().zip(&self.lengths).map(|(stress, length)| stress * length).sum()
     }
 
-    /// Returns the largest stress until the first loss of seat, divided by the largest stress at rest; `None` without
+    /// Returns the largest stress until the first loss of a seat, divided by the largest stress at rest; `None` without
     /// load at rest. The two stresses may occur at different points.
     pub fn amplification(&self) -> Option<f64> {
         self.largest_over_rest(&self.peak)
@@ -115,7 +115,7 @@ impl StressEnvelope {
         (at_rest > 0.0).then(|| most(peak) / at_rest)
     }
 
-    /// Returns the largest stress at each point until the first loss of seat, averaged over the part of the boundary
+    /// Returns the largest stress at each point until the first loss of a seat, averaged over the part of the boundary
     /// that is loaded at rest and divided by the average stress at rest; `None` without load at rest.
     pub fn mean_amplification(&self) -> Option<f64> {
         self.mean_over_rest(&self.peak)
@@ -132,7 +132,7 @@ impl StressEnvelope {
         (at_rest > 0.0).then(|| loaded.sum::<f64>() / at_rest)
     }
 
-    /// Returns the ratio of the largest stress until the first loss of seat to the stress at rest at the same point,
+    /// Returns the ratio of the largest stress until the first loss of a seat to the stress at rest at the same point,
     /// averaged over the part of the boundary that is loaded at rest; `None` without load at rest.
     pub fn mean_ratio(&self) -> Option<f64> {
         let length: f64 = self.loaded().map(|at| self.lengths[at]).sum();
@@ -142,7 +142,7 @@ impl StressEnvelope {
 
     /// Returns the mean of the envelope divided by the mean stress at rest; `None` without load at rest.
     ///
-    /// The envelope is the largest stress at each point until the first loss of seat, averaged over the part of the
+    /// The envelope is the largest stress at each point until the first loss of a seat, averaged over the part of the
     /// boundary that is loaded at any time until then. The stress at rest is averaged over the part that is loaded at
     /// rest.
     pub fn mean_of_envelope(&self) -> Option<f64> {
@@ -154,7 +154,7 @@ impl StressEnvelope {
         Some(mean(&self.peak)? / mean(&self.at_rest)?)
     }
 
-    /// Returns the largest sum of all normal contact forces until the first loss of seat, divided by the sum at rest;
+    /// Returns the largest sum of all normal contact forces until the first loss of a seat, divided by the sum at rest;
     /// `None` without load at rest.
     pub fn total_amplification(&self) -> Option<f64> {
         (self.total.at_rest > 0.0).then(|| self.total.peak / self.total.at_rest)

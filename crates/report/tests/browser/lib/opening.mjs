@@ -20,7 +20,7 @@ export async function still(page) {
   demand(Math.abs(now.time - now.moment.t) <= 0.5 / 60 + 1e-3, `it opens at ${now.time} s, its moment is ${now.moment.t} s`);
   demand(now.callouts > 0, "no sentence stands at the body that goes first");
   demand(now.hash === "", `the opening writes ${now.hash} into the address`);
-  // The first loss of seat of all panes, from the list of events.
+  // The first loss of a seat of all panes, from the list of events.
   const losses = await page.evaluate(() => window.barrelstack.player.panes.flatMap((pane) => pane.data.events).filter((event) => ["seat", "fall"].includes(event.kind)).map((event) => event.t));
   if (losses.length > 0) {
     demand(now.moment.t <= Math.min(...losses) + 1e-6, `the moment, ${now.moment.t} s, is after the first loss, ${Math.min(...losses)} s`);

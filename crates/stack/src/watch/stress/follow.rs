@@ -342,7 +342,7 @@ impl<R: Real> StressWatch<R> {
         }
     }
 
-    /// Stores the envelopes of a lane as the envelopes until the first loss of seat.
+    /// Stores the envelopes of a lane as the envelopes until the first loss of a seat.
     fn keep(&mut self, lane: usize) {
         for envelope in &mut self.lanes[lane].stresses.envelopes {
             envelope.peak.clone_from(&envelope.peak_whole_run);
