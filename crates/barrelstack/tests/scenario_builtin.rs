@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use barrelstack::Summary;
 use barrelstack::scenario::{
-    Amplitude, Friction, MotionSource, NormalLaw, Scale, Scenario, Scene, builtin,
+    Amplitude, Friction, MotionSource, NormalLaw, Scale, Scenario, Scene, Source, builtin,
 };
 use barrelstack::watch::Pace;
 use barrelstack_motion::{AccelerationUnit, Record};
@@ -22,6 +22,41 @@ fn every_builtin_scenario_is_valid() {
         let scenario = load(name);
         assert!(!scenario.title.is_empty(), "{name}");
     }
+}
+
+#[test]
+fn the_demo_names_every_field_of_the_friction_of_seats() {
+    let text = builtin::get("demo-napa").unwrap();
+    // The lines that are commented out are valid.
+    let setting = |line: &str| line.starts_with('[') || line.contains(" = ");
+    let uncommented = |line| match str::strip_prefix(line, "# ") {
+        Some(rest) if setting(rest) => rest,
+        _ => line,
+    };
+    let used: Vec<&str> = text.lines().map(uncommented).collect();
+    let scenario = Scenario::parse("used.toml", &used.join("\n"), &[]).unwrap();
+    for field in [
+        "interface.barrel-rack.friction.coefficient",
+        "interface.fallen-barrel-rack.friction.coefficient",
+        "interface.rack-ground.friction.coefficient",
+        "unknowns.friction_barrel_rack",
+        "unknowns.friction_ground",
+        "stack.columns_along",
+    ] {
+        assert!(is_given(&scenario, field), "{field}");
+    }
+    let stack = scenario.stack().unwrap();
+    let across = stack.across().unwrap();
+    assert_eq!((across.columns, across.racks_per_level()), (2, 1));
+    // Three barrels one behind the other, on three racks, in a plane that contains one of the two columns.
+    let along = stack.along().unwrap();
+    assert_eq!((along.columns, along.racks_per_level()), (3, 3));
+}
+
+/// Returns `true` if the file or a change states the field.
+fn is_given(scenario: &Scenario, field: &str) -> bool {
+    let settings = scenario.settings();
+    settings.iter().any(|one| one.path == field && one.source == Source::Given)
 }
 
 #[test]

@@ -264,7 +264,7 @@ pub(super) fn read(
         (Planes::Transverse | Planes::Longitudinal, None) => (None, None),
         (Planes::Transverse | Planes::Longitudinal, Some(_)) => {
             let message = "`stack.columns_along` applies only with `stack.view = \"both\"` or \"spatial\"; in one \
-                           plane, use `stack.columns` for the number of barrels side by side"
+                           plane, use `stack.columns` for the number of barrels on a level"
                 .to_owned();
             return Err(reader.inconsistent("columns_along", message));
         }
