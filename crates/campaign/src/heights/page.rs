@@ -5,7 +5,7 @@ use barrelstack_report::{
     Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, significant,
 };
 
-use super::plan::{LOWEST, VELOCITIES};
+use super::plan::{self, LOWEST, VELOCITIES};
 use super::{AtLevel, Height, Heights, field};
 use crate::decision::{
     LimitCurve, chance_axis, fallen_at_rest, heading, left_out, percent, points, range, refusal,
@@ -611,14 +611,31 @@ fn median_table(all: &Heights) -> Table {
     )
 }
 
+/// States the number of synthetic motions of each kind; empty if there are none.
+pub(super) fn synthetic(count: u32) -> String {
+    let kinds = [
+        "of M 6 at 8 km by Boore's method",
+        "of M 7 at 20 km by Boore's method",
+        "with a near-fault pulse",
+    ];
+    let used = plan::kinds(count).into_iter().zip(kinds).filter(|(count, _)| *count > 0);
+    let used: Vec<String> = used.map(|(count, kind)| format!("{count} {kind}")).collect();
+    match used.split_last() {
+        None => String::new(),
+        Some((last, [])) => format!(" Synthetic motions are added: {last}."),
+        Some((last, others)) => {
+            format!(" Synthetic motions are added: {} and {last}.", others.join(", "))
+        }
+    }
+}
+
 fn rests_on(all: &Heights) -> Vec<String> {
     vec![
         format!(
-            "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component{}. \
-             Number of additional synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, \
-             and near-fault pulses): {}. Each motion is scaled to every level of PGV{}.",
+            "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component{}.{} \
+             Each motion is scaled to every level of PGV{}.",
             if all.request.records.is_empty() { "" } else { ", and the given records" },
-            all.request.synthetic,
+            synthetic(all.request.synthetic),
             in_planes(
                 all,
                 "",
@@ -629,8 +646,8 @@ fn rests_on(all: &Heights) -> Vec<String> {
         format!(
             "All barrels are full and of the type `{}` of the catalog. Friction, stiffness and damping of the seats \
              are drawn for every run around the values of the catalog, with the default dispersions of a scenario. \
-             Values and dispersions are assumptions; they are different for wet floors and painted racks. Measure the \
-             values for your own floor and racks.",
+             These values and dispersions are assumptions. The friction of wet floors and of painted racks differs \
+             from these values, so measure the friction of your own floor and racks.",
             all.request.barrel
         ),
         format!(

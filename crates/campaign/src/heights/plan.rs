@@ -139,14 +139,16 @@ pub(crate) fn quoted(path: &std::path::Path) -> String {
     format!("\"{text}\"")
 }
 
-/// Returns the `[[motion]]` tables of synthetic motions; `suffix` is appended to their names.
-///
-/// Half of the motions are of a moderate earthquake nearby, and a quarter are of a large earthquake further away. The
-/// last quarter has a velocity pulse, as occurs near faults.
+/// Divides a number of synthetic motions among their kinds: a moderate earthquake nearby, which has half of them, a
+/// large earthquake further away, and motions with a velocity pulse, as occurs near faults.
+pub(super) fn kinds(count: u32) -> [u32; 3] {
+    let quarter = count / 4;
+    [count - 2 * quarter, quarter, quarter]
+}
+
+/// Returns the `[[motion]]` tables of synthetic motions of all [`kinds`]; `suffix` is appended to their names.
 pub(crate) fn synthetic(count: u32, suffix: &str) -> String {
-    let large = count / 4;
-    let pulses = count / 4;
-    let near = count - large - pulses;
+    let [near, large, pulses] = kinds(count);
     let mut text = String::new();
     let mut set = |count: u32, name: &str, body: &str| {
         if count > 0 {

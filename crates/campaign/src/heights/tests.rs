@@ -4,7 +4,7 @@ use barrelstack::variants::ShareAt;
 use barrelstack_fragility::{FitError, Monotony, Stripe};
 use barrelstack_report::{Document, markdown};
 
-use super::page::document;
+use super::page::{document, synthetic};
 use super::*;
 use crate::decision::BandKind;
 
@@ -129,6 +129,20 @@ fn every_headline_says_the_rack_and_the_direction() {
             .headline
             .contains("any stack on two-barrel racks as low risk: each stack was shaken by 5")
     );
+}
+
+#[test]
+fn the_page_states_the_synthetic_motions_by_kind_and_which_values_are_assumed() {
+    let text = markdown(&document(&made(|_, _, _| 0)), "figures").text;
+    assert_eq!(Request::default().synthetic, 22);
+    let motions = "Synthetic motions are added: 12 of M 6 at 8 km by Boore's method, 5 of M 7 at 20 km by Boore's \
+                   method and 5 with a near-fault pulse.";
+    assert!(text.contains(motions), "{text}");
+    assert_eq!(synthetic(2), " Synthetic motions are added: 2 of M 6 at 8 km by Boore's method.");
+    assert_eq!(synthetic(0), "");
+    let friction = "These values and dispersions are assumptions. The friction of wet floors and of painted racks \
+                    differs from these values";
+    assert!(text.contains(friction), "{text}");
 }
 
 #[test]
