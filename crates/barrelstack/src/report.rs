@@ -28,6 +28,7 @@ use crate::variants::{self, Answer, Plane, Remedy, Shown, Variants};
 pub use glossary::WORDS;
 pub use inputs::{inputs, not_modeled};
 pub(crate) use inputs::{settings_table, shown};
+pub use planes::RANGES;
 pub use sections::{balanced, player, standing_range, stress_figure};
 pub(crate) use sections::{standing_until, traces};
 pub use stamp::stamp_pages;
@@ -93,6 +94,7 @@ fn page(
             dots: variants::words::dots(&summary.spreads()),
             advice: summary.remedy.as_ref().map(Remedy::sentence).unwrap_or_default(),
             command: command(summary.remedy.as_ref()),
+            shown: words::shown_run(summary),
             fine: fine(run, summary),
             sentences: words::details(run, summary, summary.verification.as_ref()),
             tone: tone(run, summary),

@@ -207,9 +207,9 @@ described! {
         pub ground_work: f64 as "J" = balance.ground_work,
         /// Energy that the other terms of the balance do not account for; it is the error of the computation.
         pub residual: f64 as "J" = balance.residual,
-        /// Energy exchanged: the work of the ground and of external forces, added up without its sign, plus the energy
-        /// available at the start, which is the kinetic energy, the energy of springs, and the potential energy above
-        /// its lowest value in the run.
+        /// The energy exchanged is the work of the ground and of external forces in every step, added up without its
+        /// sign, plus the energy available at the start, which is the kinetic energy, the energy of springs, and the
+        /// potential energy above its lowest value in the run.
         pub input: f64 as "J" = balance.throughput,
         /// Absolute value of the residual divided by the energy exchanged (`input`).
         pub residual_ratio: f64 as "1" = balance.residual_ratio(),
@@ -274,10 +274,16 @@ impl Summary {
     /// Returns the statistics of the variants in each plane in which they were run, the plane
     /// across the barrels first.
     pub fn spreads(&self) -> Vec<(View, &Spread)> {
+        let planes = self.planes().into_iter();
+        planes.filter_map(|(view, one)| Some((view, one.ensemble.as_ref()?))).collect()
+    }
+
+    /// Returns the summary of each plane in which the stack was run, the plane across the barrels first; empty for a
+    /// free scene.
+    pub fn planes(&self) -> Vec<(View, &Self)> {
         let own = std::iter::once(self).chain(self.other_plane.as_deref());
         let known = |one: &Self| View::ALL.into_iter().find(|view| Some(view.name()) == one.view);
-        let mut all: Vec<_> =
-            own.filter_map(|one| Some((known(one)?, one.ensemble.as_ref()?))).collect();
+        let mut all: Vec<_> = own.filter_map(|one| Some((known(one)?, one))).collect();
         all.sort_by_key(|(view, _)| *view == View::Longitudinal);
         all
     }

@@ -14,6 +14,7 @@ mod free_elements;
 mod free_solids;
 mod locked_friction;
 mod moment;
+mod page;
 mod paper;
 mod period;
 mod racks_along;

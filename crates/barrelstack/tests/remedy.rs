@@ -236,19 +236,20 @@ fn sentences_say_which_levels_were_tried_and_not_enough() {
         (
             &[4, 3, 2, 1][..],
             &loose[..],
-            "A stack of one level would have stood in all 16 variants. Neither two to four levels nor straps \
-             tightened to 3 or 5 kN would have been enough.",
+            "A stack of one level would have stood in all 16 variants. A stack of two to four levels, or \
+             straps tightened to 3 or 5 kN, would not have been enough.",
         ),
         (
             &[4, 3, 2],
             &loose,
-            "A stack of two levels would have stood in all 16 variants. Neither three or four levels nor straps \
-             tightened to 3 or 5 kN would have been enough.",
+            "A stack of two levels would have stood in all 16 variants. A stack of three or four levels, or \
+             straps tightened to 3 or 5 kN, would not have been enough.",
         ),
         (
             &[4, 3],
             &[],
-            "A stack of three levels would have stood in all 16 variants. Four levels would not have been enough.",
+            "A stack of three levels would have stood in all 16 variants. A stack of four levels would not have been \
+             enough.",
         ),
         // The next lower stack suffices.
         (
@@ -262,7 +263,7 @@ fn sentences_say_which_levels_were_tried_and_not_enough() {
             &[4, 3],
             &[(3e3, false), (4e3, true)],
             "A stack of three levels, or of five levels held together by straps tightened to 4 kN, would have stood in \
-             all 16 variants. Four levels without these straps would not have been enough.",
+             all 16 variants. A stack of four levels without these straps would not have been enough.",
         ),
     ] {
         assert_eq!(said(levels, straps, true), words);
@@ -270,8 +271,8 @@ fn sentences_say_which_levels_were_tried_and_not_enough() {
     // Of the straps nothing is known if their search was stopped.
     assert_eq!(
         said(&[4, 3], &loose, false),
-        "A stack of three levels would have stood in all 16 variants. Four levels would not have been enough. The \
-         search for further changes was stopped."
+        "A stack of three levels would have stood in all 16 variants. A stack of four levels would not have been \
+         enough. The search for further changes was stopped."
     );
 }
 

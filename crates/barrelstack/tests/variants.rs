@@ -143,7 +143,7 @@ fn the_range_over_uncertain_constants_comes_from_the_draws_of_the_variants() {
         assert!(names.contains(&format!("interface.barrel-rack.{field}").as_str()), "{names:?}");
     }
     assert_eq!(names.len(), 4);
-    assert!(whole.decides.is_sorted_by(|a, b| a.total >= b.total));
+    assert!(whole.decides.is_sorted_by(|a, b| a.effect() >= b.effect()));
     for one in &whole.decides {
         let [first, median, last] = one.low_median_high().unwrap();
         let median = median.value;

@@ -65,6 +65,8 @@ pub struct Verdict {
     pub headline: String,
     /// Outcomes of all variants, one entry for each direction; empty for a single run.
     pub dots: Vec<Dots>,
+    /// Statement on the run that the first picture shows, placed above this picture; may be empty.
+    pub shown: String,
     /// Recommended action, as one sentence; may be empty.
     pub advice: String,
     /// A command that shows the effect of the advice; may be empty.

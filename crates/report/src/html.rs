@@ -187,6 +187,9 @@ impl<'a> Writer<'a> {
                 self.put("</p>\n");
             }
         }
+        if !verdict.shown.is_empty() {
+            self.element("<p class=\"shown\">", &verdict.shown, "</p>");
+        }
         let count = document.warnings.len();
         if count > 0 {
             let plural = if count == 1 { "" } else { "s" };

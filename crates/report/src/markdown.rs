@@ -40,6 +40,9 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
     writer.line(&format!("# {}\n", escape::markdown(&document.title)));
     let headline = escape::markdown(&verdict.headline);
     writer.line(&format!("**{}: {headline}**\n", t(verdict.tone.word())));
+    if !verdict.shown.is_empty() {
+        writer.line(&format!("{}\n", escape::markdown(&verdict.shown)));
+    }
     let (opening, rest) = document.parted();
     writer.blocks(opening, 0);
     if !verdict.advice.is_empty() {

@@ -243,6 +243,9 @@ impl<'a> Flow<'a> {
         for dots in &verdict.dots {
             self.dots(dots);
         }
+        if !verdict.shown.is_empty() {
+            self.paragraph("page-text", &verdict.shown);
+        }
     }
 
     /// Writes the sentences of the verdict that follow the first picture.

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use barrelstack::outcome::Outcome;
 use barrelstack::report::{
-    WORDS, balanced, command, demand_table, device_table, inputs, interface_table, legend,
+    RANGES, WORDS, balanced, command, demand_table, device_table, inputs, interface_table, legend,
     not_modeled, record_fingerprints, trust, unknowns,
 };
-use barrelstack::variants::words::dots_of;
+use barrelstack::variants::words::{self, ShownOutcome, dots_of};
 use barrelstack::variants::{Range, Remedy};
 use barrelstack::verify::Verification;
 use barrelstack_report::{
@@ -97,9 +97,9 @@ pub fn document(answer: &Answer) -> Document {
                 Block::Table(demand_table(&summary.demands, &summary.demands_whole_run)),
             ]);
             let table = interface_table(
-                "Force on the upper body, or on the body that is named first: the value of largest magnitude until \
-                 the first loss of a seat, and the value of largest magnitude over the whole run, falls \
-                 included. Each horizontal force is the resultant of its two horizontal components.",
+                "Force in the run that is shown, on the upper body, or on the body that is named first: the value of \
+                 largest magnitude until the first loss of a seat, and the value of largest magnitude over the whole \
+                 run, falls included. Each horizontal force is the resultant of its two horizontal components.",
                 &summary.interfaces,
             );
             blocks.extend([heading("Forces at the seats"), Block::Table(table)]);
@@ -124,6 +124,7 @@ pub fn document(answer: &Answer) -> Document {
                 .into_iter()
                 .chain(summary.verification.iter().flat_map(Verification::sentences))
                 .collect(),
+            shown: shown_run(summary),
             fine: Vec::new(),
             tone: tone(run, summary),
         },
@@ -135,12 +136,20 @@ pub fn document(answer: &Answer) -> Document {
     }
 }
 
+/// States which run is shown, with its outcome beside those of all variants; empty without variants.
+fn shown_run(summary: &Summary) -> String {
+    let kind = summary.outcome.common.kind;
+    let outcome = summary.ensemble.iter().map(|spread| ShownOutcome { view: None, kind, spread });
+    words::shown_run(summary.variant, &outcome.collect::<Vec<_>>())
+}
+
 /// Returns the table of the results of the run.
 fn numbers(run: &Run, summary: &Summary) -> Block {
     let caption = if run.stack.is_free() {
         "Results of the run that is shown."
     } else {
-        "Results of the run that is shown. Demands are the largest values until the first loss of a seat."
+        "Results of the run that is shown. Demands are the largest values until the first loss of a seat or, if no \
+         seat is lost, over the whole run."
     };
     let mut numbers = Table::new(caption, &[("", ""), ("", "")]);
     let row = |(a, b)| vec![Cell::text(a), Cell::text(b)];
@@ -189,9 +198,9 @@ fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
-            "Ranges span the 5th to the 95th percentile of the variants. The first body is the body that loses its \
-             seat first; its direction is the direction in which it leaves the seat. The direction of a barrel that \
-             fell{} is the direction from its position at rest to its position at the end of the run.",
+            "{RANGES} The first body is the body that loses its seat first; its direction is the direction in which \
+             it leaves the seat. The direction of a barrel that fell{} is the direction from its position at rest to \
+             its position at the end of the run.",
             spread.counted("the first loss of a seat")
         ),
         &[("", ""), ("in three dimensions", "")],
@@ -278,8 +287,8 @@ fn fates(run: &Run) -> Table {
     let time = |at: Option<f64>| Cell::measured(at, 2);
     let length = |value: f64| Cell::Measured(100.0 * value, 1);
     Table::of(
-        "Slips are displacements of a body relative to its supports, before the first loss of a seat. All other \
-         displacements are those at the end of the run.",
+        "Slips are displacements of a body relative to its supports, before the first loss of a seat or, if no seat is \
+         lost, during the whole run. All other displacements are those at the end of the run.",
         run.stack.parts.iter().zip(&run.fates).skip(1),
         &[
             ("body", "", &|(part, _)| Cell::verbatim(&part.name)),

@@ -9,7 +9,7 @@ use barrelstack::compare::{self, Comparison, Side};
 use barrelstack::summary::AnySummary;
 use barrelstack::variants::{Advance, RunChoice};
 use barrelstack::verify::{APART, DISTURBED, Repeatable as _, verify};
-use barrelstack_report::{Block, Paper, document_pdf, html};
+use barrelstack_report::{Block, Language, Paper, document_pdf, html};
 use barrelstack_space::run::{Run, run};
 use barrelstack_space::{AnyAnswer, answer, summary};
 
@@ -144,4 +144,20 @@ fn the_report_on_paper_has_the_headline_and_the_views_of_the_page() {
         assert!(text.contains(words), "{words}: {text}");
         assert!(page.contains(words), "{words}");
     }
+    // Both state which run is shown, and the page states this above the pictures.
+    let shown = &document.verdict.shown;
+    assert!(
+        shown.starts_with("The run that is shown is ") && text.contains(shown.as_str()),
+        "{shown}"
+    );
+    assert!(page.find(shown.as_str()).unwrap() < page.find("<figure").unwrap());
+    for words in [
+        "before the first loss of a seat or, if no seat is lost, during the whole run",
+        "until the first loss of a seat or, if no seat is lost, over the whole run",
+        "Force in the run that is shown, on the upper body",
+        "The range of the first fall is that of those variants among them in which a barrel falls",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert_eq!(document.untranslated(Language::Spanish), Vec::<String>::new());
 }

@@ -98,15 +98,16 @@ demands! {
         (height > 0.0).then_some(drift / height)
     };
     /// Largest normal stress on a barrel of the bottom level, divided by the largest stress at rest. The two may occur
-    /// at different points of the barrel.
-    stress_amplification "1": "stress amplification, largest on a bottom barrel", 1.0 "× at rest" 2,
+    /// at different points of the barrel, so the value may be less than `mean_stress_amplification`.
+    stress_amplification "1": "stress amplification of a bottom barrel, ratio of largest stresses", 1.0 "× at rest" 2,
         |sources, body| match sources.span {
             Span::UntilLoss => sources.stress(body)?.amplification(),
             Span::WholeRun => sources.stress(body)?.amplification_whole_run(),
         };
     /// Largest normal stress at each point of a barrel of the bottom level, averaged over the part of the boundary that
     /// is loaded at rest, and divided by the average stress at rest.
-    mean_stress_amplification "1": "stress amplification, average over the loaded boundary", 1.0 "× at rest" 2,
+    mean_stress_amplification "1":
+        "stress amplification of a bottom barrel, ratio of average stresses", 1.0 "× at rest" 2,
         |sources, body| match sources.span {
             Span::UntilLoss => sources.stress(body)?.mean_amplification(),
             Span::WholeRun => sources.stress(body)?.mean_amplification_whole_run(),

@@ -87,6 +87,12 @@ fn ground(run: &Run) -> Option<History> {
     Some(History { label: format!("{}, {}", first.label, view.words()), ..first })
 }
 
+/// States over which variants the ranges of results are taken.
+pub const RANGES: &str = "Ranges span the 5th to the 95th percentile of the variants. The range of the first loss of \
+                          a seat is that of all variants that collapse while they are shaken. The range of the first \
+                          fall is that of those variants among them in which a barrel falls, so its ends may lie \
+                          before those of the first loss of a seat.";
+
 /// Tabulates the statistics of all variants, with one column per plane.
 pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     let planes = summary.spreads();
@@ -94,8 +100,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         return Vec::new();
     }
     let noun = if planes.len() > 1 { "barrels in this plane" } else { "barrels" };
-    let mut table =
-        Table::new("Ranges span the 5th to the 95th percentile of the variants.", &[("", "")]);
+    let mut table = Table::new(RANGES, &[("", "")]);
     table.columns.extend(
         planes.iter().map(|(view, _)| barrelstack_report::Column::new(capital(view.words()), "")),
     );
@@ -168,7 +173,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     blocks
 }
 
-/// Formats the central range and the whole range of a result over all variants.
+/// Formats the central range and the whole range of a result over the variants that have this result.
 fn spans(range: &Range, decimals: usize) -> [String; 2] {
     let Range { p05, p95, least, most, .. } = *range;
     [span(p05, p95, decimals), span(least, most, decimals)]
@@ -176,7 +181,11 @@ fn spans(range: &Range, decimals: usize) -> [String; 2] {
 
 /// Returns the whole range of a result in parentheses; empty if it equals the central range that is shown before it.
 fn over_all(central: &str, whole: &str, unit: &str) -> String {
-    if central == whole { String::new() } else { format!(" (over all variants: {whole}{unit})") }
+    if central == whole {
+        String::new()
+    } else {
+        format!(" (over all of these variants: {whole}{unit})")
+    }
 }
 
 /// Formats a range, or a single number if both ends are equal when rounded.

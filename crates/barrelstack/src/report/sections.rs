@@ -378,9 +378,9 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
         return Vec::new();
     }
     let caption = format!(
-        "Force on the upper body, or on the body named first if neither rests on the other; positive up and to the right. \
-         Two forces are given: the one of largest magnitude until the first loss of a seat, and the one of largest \
-         magnitude over the whole run, falls included.{}",
+        "Force in the run that is shown, on the upper body, or on the body named first if neither rests on the \
+         other; positive up and to the right. Two forces are given: the one of largest magnitude until the first \
+         loss of a seat, and the one of largest magnitude over the whole run, falls included.{}",
         slice(run)
     );
     let table = interface_table(&caption, &summary.interfaces);
@@ -399,7 +399,8 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
             ],
         ));
     }
-    blocks.push(Block::details("Largest forces at every interface", vec![Block::Table(table)]));
+    let title = "Largest forces at every interface, in the run that is shown";
+    blocks.push(Block::details(title, vec![Block::Table(table)]));
     blocks
 }
 
@@ -427,9 +428,11 @@ fn motion(run: &Run) -> Vec<Block> {
 /// States the residual of the energy balance of a run, and the energy exchanged.
 pub fn balanced(balance: &EnergyBalance) -> String {
     format!(
-        "The energy supplied by the ground and by gravity equals the energy stored and dissipated, except for a residual of {} \
-         times the {} kJ exchanged. The energy exchanged is the work of the ground, added up without its sign, and the \
-         energy available at the start.",
+        "The energy supplied by the ground, by external forces and by gravity equals the energy stored and \
+         dissipated, except for a residual of {} times the {} kJ exchanged. The energy exchanged is the work of the \
+         ground and of external forces in every step, added up without its sign, plus the energy available at the \
+         start, which is the kinetic energy, the energy of springs, and the potential energy above its lowest value \
+         in the run.",
         significant(balance.residual_ratio, 2),
         significant(1e-3 * balance.input, 3)
     )

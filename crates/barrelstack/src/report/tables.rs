@@ -10,10 +10,25 @@ fn kilonewtons(value: f64) -> Cell {
     Cell::Measured(1e-3 * value, 2)
 }
 
+/// Explains the two stress amplifications, of which either may be the larger one.
+const TWO_RATIOS: &str = " The ratio of largest stresses divides the largest stress on a barrel by the largest \
+                          stress on it at rest, which may occur at another point. The ratio of average stresses \
+                          divides the average of the largest stress at each point by the average at rest, over the \
+                          part of the boundary that is loaded at rest. Either ratio may be the larger one.";
+
+/// `true` if both stress amplifications are known.
+fn both(demands: &Demands) -> bool {
+    demands.stress_amplification.is_some() && demands.mean_stress_amplification.is_some()
+}
+
 /// Tabulates the demands on a stack until the first loss of a seat, and over the whole run.
 pub fn demand_table(until_loss: &Demands, whole_run: &Demands) -> Table {
     Table::of(
-        "Demands on the stack until the first loss of a seat, and over the whole run, falls included.",
+        format!(
+            "Demands on the stack in the run that is shown, until the first loss of a seat and over the whole run, \
+             falls included.{}",
+            if both(until_loss) { TWO_RATIOS } else { "" }
+        ),
         DEMANDS.iter().filter_map(|demand| {
             Some((demand, demand.shown(until_loss)?, demand.shown(whole_run)))
         }),
@@ -61,8 +76,8 @@ pub fn interface_table(caption: &str, interfaces: &[JointSummary]) -> Table {
 pub fn device_table(Device { words, elements }: &Device) -> Vec<Block> {
     let table = Table::of(
         format!(
-            "Largest {} of every {} until the first loss of a seat, and over the whole run. Left and right are as in \
-             the picture.",
+            "Largest {} of every {} in the run that is shown, until the first loss of a seat and over the whole run. \
+             Left and right are as in the picture.",
             words.force, words.one
         ),
         elements,

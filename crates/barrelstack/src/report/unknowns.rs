@@ -7,7 +7,7 @@ use crate::variants::words::percent;
 use crate::variants::{Spread, Unknown};
 
 /// Returns, for each plane, a table of the uncertain constants; and, for all planes, a figure of the share of collapses
-/// as a function of the most influential constant. Omits planes without a range of the share of collapses
+/// as a function of the constant that changes it most. Omits planes without a range of the share of collapses
 /// ([`Spread::range`]).
 ///
 /// `planes` pairs the words for a plane, such as "along the barrels" (empty for a three-dimensional model), with the
@@ -37,15 +37,15 @@ fn table(place: &str, spread: &Spread) -> Table {
     let share = |one: &Unknown, place| Cell::maybe(at(one, place).map(|at| percent(at.share)));
     Table::of(
         format!(
-            "{shaken}{} to {} of stacks collapse, depending on the uncertain constants of the seats; {stated} \
-             collapse with all of these constants at their medians. For each constant, the table gives the 5 % \
-             fractile, the median and the 95 % fractile, and for each of these values the share of stacks that \
-             collapse, averaged over the other constants. The column “change” gives the 95 % interval of the \
-             difference between the largest and the smallest share as the constant varies. If all \
-             other constants were known, only a part of the variance of the share would remain; the column “variance” \
-             gives this part as a fraction. \
-             The column “range left” gives the average width of the range of shares that would remain if the \
-             constant were measured exactly.",
+            "{shaken}{} to {} of stacks collapse with given values of the uncertain constants of the seats (95 % \
+             range); {stated} collapse with all of these constants at their medians. For each constant, the table \
+             gives the 5 % fractile, the median and the 95 % fractile, and for each of these values the share of \
+             stacks that collapse, averaged over the other constants. The column “change” gives the difference \
+             between the largest and the smallest share as the constant varies between these fractiles, with its 95 \
+             % interval; the constants are in the order of this difference. If all other constants were known, only a \
+             part of the variance of the share would remain; the column “variance” gives this part as a fraction. The \
+             column “range left” gives the average width of the range of shares that would remain if the constant \
+             were measured exactly.",
             range[0], range[1]
         ),
         &spread.decides,
@@ -60,7 +60,7 @@ fn table(place: &str, spread: &Spread) -> Table {
             ("change", "%", &|one| {
                 let [low, high] =
                     one.difference.map(|end| format!("{:+.0}", 100.0 * end).replace('-', "−"));
-                Cell::text(format!("{low} to {high}"))
+                Cell::text(format!("{:+.0} ({low} to {high})", 100.0 * one.effect()))
             }),
             ("variance", "", &|one| Cell::text(significant(one.total, 2))),
             ("range left", "%", &|one| Cell::Measured(100.0 * one.width_if_measured, 0)),

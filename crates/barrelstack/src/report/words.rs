@@ -9,6 +9,7 @@ use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
 use crate::scenario::{MotionSpec, View};
 use crate::summary::{Device, EnergyBalance, RunSummary, Summary, Unfinished};
+use crate::variants::words::ShownOutcome;
 use crate::variants::{self, Remedy};
 use crate::verify::Verification;
 
@@ -213,6 +214,18 @@ pub fn command(remedy: Option<&Remedy>) -> String {
     command.map(|text| text.split(' ').map(word).collect::<Vec<_>>().join(" ")).unwrap_or_default()
 }
 
+/// States which run is shown, with its outcome beside those of all variants; empty without variants.
+pub(super) fn shown_run(summary: &Summary) -> String {
+    let planes = summary.planes();
+    let several = planes.len() > 1;
+    let outcomes = planes.into_iter().filter_map(|(view, one)| {
+        let (view, spread) = (Some(view).filter(|_| several), one.ensemble.as_ref()?);
+        Some(ShownOutcome { view, kind: one.outcome.kind, spread })
+    });
+    let outcomes: Vec<ShownOutcome<'_>> = outcomes.collect();
+    variants::words::shown_run(summary.variant, &outcomes)
+}
+
 /// Returns an introductory phrase that names the run to which a sentence refers, such as "Along the barrels, in the run
 /// that is shown, "; empty if there is only one run.
 fn shown(run: &Run, summary: &Summary) -> String {
@@ -309,10 +322,28 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
     pair("scenario fingerprint", summary.provenance.scenario_hash.clone());
     pairs.extend(record_fingerprints(&run.stated.motion));
     let mut pair = |name: &str, value: String| pairs.push((name.to_owned(), value));
-    let RunSummary { method, time_step, steps, stiffness_basis, .. } = summary.run;
-    let step = 1e3 * time_step;
-    pair("integration", format!("{method}, time step {step:.4} ms, {steps} steps"));
-    let constants = match stiffness_basis {
+    let planes = summary.planes();
+    let views: Vec<&str> = planes.iter().map(|(view, _)| view.words()).collect();
+    if !views.is_empty() {
+        pair("view", views.join(" and "));
+    }
+    // Each plane has its own run.
+    let place =
+        |view: View| if planes.len() > 1 { format!(" {}", view.words()) } else { String::new() };
+    let runs: Vec<(String, &Summary)> = if planes.is_empty() {
+        vec![(String::new(), summary)]
+    } else {
+        planes.iter().map(|(view, one)| (place(*view), *one)).collect()
+    };
+    for (place, one) in &runs {
+        let RunSummary { method, time_step, steps, .. } = one.run;
+        let step = 1e3 * time_step;
+        pair(
+            &format!("integration{place}"),
+            format!("{method}, time step {step:.4} ms, {steps} steps"),
+        );
+    }
+    let constants = match summary.run.stiffness_basis {
         "seat" => "stated per seat, independent of its number of contact nodes",
         "node" => "stated per contact node, as in the paper",
         "length" => "stated per meter of boundary",
@@ -328,7 +359,10 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
         )
     };
     let lost = || "not available, because the computation failed".to_owned();
-    pair("energy balance", summary.energy.as_ref().map_or_else(lost, residual));
+    for (place, one) in &runs {
+        let balance = one.energy.as_ref().map_or_else(lost, residual);
+        pair(&format!("energy balance{place}"), balance);
+    }
     let own = &summary.provenance.motion;
     let mut motion = |place: &str, steps: &[String], known: &[String]| {
         let steps = steps.iter().enumerate().filter(|(_, step)| !known.contains(step));

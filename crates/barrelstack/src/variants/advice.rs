@@ -58,12 +58,12 @@ impl Remedy {
         };
         let stopped =
             if self.complete { "" } else { " The search for further changes was stopped." };
+        let over_constants = self.over_constants();
         format!(
-            "{}.{}{}{}{stopped}",
+            "{}.{}{}{over_constants}{stopped}",
             capital(&sentence),
             self.not_enough(),
-            self.confidence(),
-            self.over_constants()
+            self.confidence(!over_constants.is_empty())
         )
     }
 
@@ -79,17 +79,15 @@ impl Remedy {
         let higher: Vec<u32> = higher.map(|one| one.levels).collect();
         let range = higher.iter().min().zip(higher.iter().max());
         let levels = range.map(|(least, most)| match most - least {
-            0 => counted(*least, "level"),
-            1 => format!("{} or {} levels", number(*least), number(*most)),
-            _ => format!("{} to {} levels", number(*least), number(*most)),
+            0 => format!("a stack of {}", counted(*least, "level")),
+            1 => format!("a stack of {} or {} levels", number(*least), number(*most)),
+            _ => format!("a stack of {} to {} levels", number(*least), number(*most)),
         });
         let strapped = self.tried.iter().any(|one| one.kind == "straps");
         let straps = (self.straps.is_none() && self.complete && strapped)
             .then(|| format!("straps tightened to {}", self.pretensions()));
         let what = match (levels, straps, &self.straps) {
-            (Some(levels), Some(straps), _) => {
-                return format!(" Neither {levels} nor {straps} would have been enough.");
-            }
+            (Some(levels), Some(straps), _) => format!("{levels}, or {straps},"),
             (Some(levels), None, Some(_)) => format!("{levels} without these straps"),
             (Some(one), None, None) | (None, Some(one), _) => one,
             (None, None, _) => return String::new(),
@@ -138,14 +136,15 @@ impl Remedy {
             )
         });
         format!(
-            " Allowing for the uncertain friction, stiffness and damping of the seats, {said} would fall (95 % range){}.",
+            " With given values of these constants, {said} would fall (95 % range){}.",
             order.unwrap_or_default()
         )
     }
 
     /// States, for each sufficient change, the upper confidence bound of the share of stacks that fall, adjusted for
-    /// the number of candidates.
-    fn confidence(&self) -> String {
+    /// the number of candidates. If `averaged` is set, a statement of the range over the uncertain constants follows,
+    /// so the sentence adds that this share is an average over these constants.
+    fn confidence(&self, averaged: bool) -> String {
         let at_most = |one: &Tried| one.interval.map(|[_, high]| percent(high));
         let most = match (&self.height, &self.straps) {
             (Some(height), Some(straps)) => match (at_most(height), at_most(straps)) {
@@ -169,7 +168,14 @@ impl Remedy {
             0 | 1 => String::new(),
             many => format!(", corrected for testing up to {many} changes"),
         };
-        format!(" At most {most} would fall (95 % confidence{choice}).")
+        if averaged {
+            format!(
+                " On average over the friction, stiffness and damping of the seats, which are uncertain, at most \
+                 {most} would fall (95 % confidence{choice})."
+            )
+        } else {
+            format!(" At most {most} would fall (95 % confidence{choice}).")
+        }
     }
 
     /// Returns the pretensions of the straps that were tried, such as "3, 4 or 5 kN".

@@ -1,5 +1,5 @@
 //! Range of the share of collapses as the uncertain constants of the seats vary, and the constant
-//! that decides the result.
+//! that changes this share most.
 
 use barrelstack_fragility::{Conditional, DrawnRun, Influence, conditional, normal_quantile};
 use barrelstack_motion::Random;
@@ -314,7 +314,7 @@ pub struct Fitted {
     pub range: [f64; 2],
     /// Share of collapses if all uncertain constants are at their medians.
     pub as_stated: f64,
-    /// The constants, the most influential first.
+    /// The constants, in the order of [`Unknown::effect`], the largest first.
     pub decides: Vec<Unknown>,
 }
 
@@ -349,16 +349,25 @@ impl Fitted {
             }
         };
         let influences = fitted.influences(LEVEL);
-        let mut decides: Vec<Unknown> =
-            constants.iter().zip(influences).enumerate().map(unknown).collect();
-        decides.sort_by(|a, b| b.total.total_cmp(&a.total));
-        Self { range: [whole.low, whole.high], as_stated: fitted.at_medians(), decides }
+        let decides = constants.iter().zip(influences).enumerate().map(unknown).collect();
+        Self {
+            range: [whole.low, whole.high],
+            as_stated: fitted.at_medians(),
+            decides: by_effect(decides),
+        }
     }
 
-    /// Returns the most influential decisive constant; `None` if no constant is decisive.
+    /// Returns the decisive constant that changes the share of collapses most; `None` if no constant is decisive.
     pub fn decisive(&self) -> Option<&Unknown> {
         self.decides.iter().find(|one| one.is_decisive())
     }
+}
+
+/// Sorts constants by the difference between the largest and the smallest share, the largest difference first. Pages
+/// state these shares, so the order agrees with the numbers that a reader sees.
+fn by_effect(mut decides: Vec<Unknown>) -> Vec<Unknown> {
+    decides.sort_by(|a, b| b.effect().total_cmp(&a.effect()));
+    decides
 }
 
 /// Returns the correlation matrix of the deviates of constants. `of_friction` is the correlation between any two
@@ -436,7 +445,7 @@ impl Spread {
         (left < 0.9 * (high - low)).then_some((best, left))
     }
 
-    /// Returns the most influential decisive constant; `None` if no constant is decisive.
+    /// Returns the decisive constant that changes the share of collapses most; `None` if no constant is decisive.
     pub fn decisive(&self) -> Option<&Unknown> {
         self.decides.iter().find(|one| one.is_decisive())
     }
@@ -444,8 +453,30 @@ impl Spread {
 
 #[cfg(test)]
 mod tests {
-    use super::{STATIC_BARREL_RACK, drawn};
+    use super::{Fitted, STATIC_BARREL_RACK, ShareAt, Unknown, by_effect, drawn};
     use crate::Scenario;
+
+    #[test]
+    fn the_constant_with_the_widest_range_of_shares_comes_first() {
+        let of = |name, shares: [f64; 3], total| Unknown {
+            name,
+            field: "interface.barrel-rack.stiffness",
+            unit: "N/m",
+            dispersion: 0.6,
+            shares: shares
+                .map(|share| ShareAt { value: 1.0, share, interval: [share; 2] })
+                .to_vec(),
+            difference: [0.1, 0.9],
+            total,
+            width_if_measured: 0.5,
+        };
+        // More variance would remain for the stiffness, but the range over the friction is wider.
+        let stiffness = of("stiffness of seats", [0.9, 0.8, 0.6], 0.6);
+        let friction = of("friction of barrels on racks", [0.95, 0.8, 0.4], 0.4);
+        let decides = by_effect(vec![stiffness, friction]);
+        let fitted = Fitted { range: [0.2, 1.0], as_stated: 0.8, decides };
+        assert_eq!(fitted.decisive().unwrap().name, "friction of barrels on racks");
+    }
 
     #[test]
     fn constants_enter_the_fit_if_they_are_drawn() {

@@ -31,24 +31,26 @@ described! {
         /// Share of variants that collapse, among those with a verdict; null if no variant has a verdict.
         pub share: Option<f64> as "1",
         /// Wilson's 95 % interval of the share that collapses, widened so that it holds regardless
-        /// of whether the variants without a verdict stand or collapse.
+        /// of whether the variants without a verdict stand or collapse. This share is an average over the uncertain
+        /// constants, and the interval is its sampling error.
         pub interval: [f64; 2] as "1",
-        /// Range of the share of stacks that collapse, over the uncertain constants of the seats:
-        /// it contains 95 % of the shares if these constants are drawn from their distributions,
-        /// sampling error included. Null if there are fewer than 16 variants, if one of them has no
-        /// verdict, or if they differ only in positions and masses.
+        /// Range of the share of stacks that collapse with given values of the uncertain constants of the seats: it
+        /// contains 95 % of these shares if the constants are drawn from their distributions, sampling error included;
+        /// so it may be wider than `interval`. Null if there are fewer than 16 variants, if one of them has no verdict,
+        /// or if they differ only in positions and masses.
         pub range: Option<[f64; 2]> as "1",
         /// Share of stacks that collapse if all uncertain constants are at their medians; null if `range` is null. The
         /// medians are the stated values, except that of a static coefficient of friction that is drawn at random: it
         /// lies above the stated value.
         pub share_as_stated: Option<f64> as "1",
-        /// The uncertain constants of the seats, the most influential first; empty if `range` is
-        /// null.
+        /// The uncertain constants of the seats, in the order of the difference between the largest and the smallest
+        /// of their `shares`, the largest first; empty if `range` is null.
         pub decides: Vec<Unknown>,
         /// Time of the first loss of a seat, over the variants that collapse while shaken.
         pub first_loss: Option<Range> as "s",
-        /// Time of the first fall of a barrel, over the variants in which a barrel falls while
-        /// shaken and before the run ends.
+        /// Time of the first fall of a barrel, over those of these variants in which a barrel falls before the run
+        /// ends. They may be fewer than for `first_loss`, so a fractile of the first fall may be less than that of the
+        /// first loss of a seat.
         pub first_fall: Option<Range> as "s",
         /// Number of barrels fallen by the end of the run, over the variants that collapse while
         /// shaken.

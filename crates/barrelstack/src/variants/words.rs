@@ -1,6 +1,7 @@
 //! Sentences about the results of variants.
 
 mod range;
+mod shown;
 
 use barrelstack_report::{Dots, Tone, capital};
 
@@ -10,6 +11,7 @@ use crate::summary::Summary;
 
 use range::depends_on;
 pub use range::measure;
+pub use shown::{ShownOutcome, shown_run};
 
 /// Smallest share of collapsing variants for which the verdict is "Falls".
 const FALLS: f64 = 0.9;
@@ -419,7 +421,8 @@ mod tests {
     use std::ops::ControlFlow;
 
     use super::{
-        Scenario, Spread, Tone, View, fine, headline, headline_in_space, measure, percent, tone,
+        Scenario, ShownOutcome, Spread, Tone, View, fine, headline, headline_in_space, measure,
+        percent, shown_run, tone,
     };
     use crate::variants::{Range, RunChoice, ShareAt, Unknown, answer};
 
@@ -638,6 +641,43 @@ mod tests {
     }
 
     #[test]
+    fn the_shown_run_is_named_with_its_outcome_beside_those_of_all_variants() {
+        let of = |view, kind, spread| ShownOutcome { view, kind, spread };
+        let (few, many) = (spread(64, 12), Spread { typical: 15, ..spread(64, 53) });
+        assert_eq!(
+            shown_run(15, &[of(None, "stable", &many)]),
+            "The run that is shown is variant 15, the most typical of all: it stands, while 53 of 64 variants fall."
+        );
+        let both = [
+            of(Some(View::Transverse), "stable", &few),
+            of(Some(View::Longitudinal), "collapse", &many),
+        ];
+        assert_eq!(
+            shown_run(3, &both),
+            "The run that is shown is variant 3: across the barrels, it stands, while 12 of 64 variants fall; along \
+             the barrels, it falls, as do 53 of 64 variants."
+        );
+        let named = "The run that is shown is the stack as stated, the most typical of all:";
+        for (kind, collapsed, words) in [
+            ("stable", 0, "it stands"),
+            ("stable", 1, "it stands, while 1 of 64 variants falls"),
+            ("stable", 64, "it stands, while all 64 variants fall"),
+            ("collapse", 64, "it falls"),
+            ("collapse", 1, "it falls, as does 1 of 64 variants"),
+            ("collapse", 0, "it falls, while none of 64 variants falls"),
+            ("invalid", 1, "it has no verdict"),
+        ] {
+            let all = spread(64, collapsed);
+            let said = shown_run(0, &[of(None, kind, &all)]);
+            assert_eq!(said, format!("{named} {words}."));
+        }
+        let cut = Spread { standing_until: Some(1.0), ..spread(64, 0) };
+        let said = shown_run(0, &[of(None, "stable", &cut)]);
+        assert_eq!(said, format!("{named} it stands until the runs end at 1.0 s."));
+        assert_eq!(shown_run(0, &[]), "");
+    }
+
+    #[test]
     fn crushed_staves_follow_the_verdict_of_their_plane() {
         let mut one = spread(64, 0);
         one.stave_utilization = Some(0.97);
@@ -682,9 +722,10 @@ mod tests {
         one.range = Some([0.17, 1.0]);
         one.decides = vec![unknown([0.1, 0.6])];
         let said = headline(&[(View::Transverse, &spread(64, 3)), (View::Longitudinal, &one)]);
-        let range = "Depending on the friction, stiffness and damping of the seats, which are uncertain, 17 to 100 % of such \
-             stacks fall in the direction along the barrels; ";
-        let decides = "the stiffness of seats decides the outcome: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.";
+        let range = "The share of variants that fall is an average over the friction, stiffness and damping of the \
+                     seats, which are uncertain; with given values of these constants, 17 to 100 % of such stacks \
+                     fall in the direction along the barrels (95 % range). ";
+        let decides = "The stiffness of seats changes this share most: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.";
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
         let left =
@@ -694,7 +735,9 @@ mod tests {
         one.decides = vec![unknown([-0.1, 0.6])];
         let said = headline(&[(View::Longitudinal, &one)]);
         assert!(
-            said.contains(&format!("{range}no single one of these constants decides the outcome.")),
+            said.contains(&format!(
+                "{range}No single one of these constants changes this share by much."
+            )),
             "{said}"
         );
         // If the smallest share occurs at the median, the sentence also states the share at the median.
@@ -707,7 +750,8 @@ mod tests {
         );
         one.range = Some([0.94, 1.0]);
         let said = headline_in_space(&one);
-        let little = "The friction, stiffness and damping of the seats are uncertain, but matter little: 94 to 100 % of such stacks fall.";
+        let little = "The friction, stiffness and damping of the seats are uncertain, but matter little: with given \
+                      values of these constants, 94 to 100 % of such stacks fall (95 % range).";
         assert!(said.contains(little), "{said}");
         // A measurement that does not narrow the range is not recommended.
         one.range = Some([0.4, 1.0]);

@@ -101,7 +101,8 @@ impl<F: FnMut(&mut String)> Visit<F> {
 
     fn document(&mut self, document: &mut Document) {
         let verdict = &mut document.verdict;
-        self.texts([&mut document.title, &mut verdict.headline, &mut verdict.advice]);
+        self.texts([&mut document.title, &mut verdict.headline, &mut verdict.shown]);
+        self.texts([&mut verdict.advice]);
         self.texts(verdict.dots.iter_mut().map(|dots| &mut dots.direction));
         self.texts(verdict.sentences.iter_mut().chain(&mut verdict.fine));
         self.texts(&mut document.warnings);

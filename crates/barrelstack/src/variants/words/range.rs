@@ -12,8 +12,11 @@ const NARROW: f64 = 0.1;
 const BEYOND: f64 = 0.1;
 
 /// Describes the range over which the share of collapses varies with the uncertain constants, and states which constant
-/// is decisive: "Depending on the friction, stiffness and damping of the seats, which are uncertain, 31 to 100 % of
-/// such stacks fall in the direction along the barrels; the stiffness of seats decides the outcome: …".
+/// changes it most: "The share of variants that fall is an average over the friction, stiffness and damping of the
+/// seats, which are uncertain; with given values of these constants, 31 to 100 % of such stacks fall in the direction
+/// along the barrels (95 % range). The stiffness of seats changes this share most: …".
+///
+/// The interval of the share in the verdict has another meaning: it is the sampling error of the share of variants.
 pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
     let [low, high] = spread.range?;
     let place = view.map_or_else(String::new, |view| format!(" in the direction {}", view.words()));
@@ -21,12 +24,13 @@ pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
     let range = format!("{} to {to}", from.trim_end_matches(" %"));
     if high - low <= NARROW {
         return Some(format!(
-            "The friction, stiffness and damping of the seats are uncertain, but matter little: {range} of such stacks fall{place}."
+            "The friction, stiffness and damping of the seats are uncertain, but matter little: with given values of \
+             these constants, {range} of such stacks fall{place} (95 % range)."
         ));
     }
     let decisive = spread.decisive().and_then(|one| Some((one, one.low_median_high()?)));
     let which = decisive.map_or_else(
-        || "no single one of these constants decides the outcome".to_owned(),
+        || "No single one of these constants changes this share by much.".to_owned(),
         |(one, [low, median, high])| {
             // The share at the median is stated if it lies well outside the shares at both ends.
             let (least, most) = (low.share.min(high.share), low.share.max(high.share));
@@ -35,11 +39,13 @@ pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
             let words =
                 |at: &ShareAt| format!("{} fall at {}", percent(at.share), one.words(at.value));
             let stated: Vec<String> = stated.into_iter().flatten().map(words).collect();
-            format!("the {} decides the outcome: {}", one.name, stated.join(", "))
+            format!("The {} changes this share most: {}.", one.name, stated.join(", "))
         },
     );
     Some(format!(
-        "Depending on the friction, stiffness and damping of the seats, which are uncertain, {range} of such stacks fall{place}; {which}."
+        "The share of variants that fall is an average over the friction, stiffness and damping of the seats, which \
+         are uncertain; with given values of these constants, {range} of such stacks fall{place} (95 % range). \
+         {which}"
     ))
 }
 
