@@ -211,7 +211,7 @@ fn variants(summary: &Summary) -> Option<Table> {
     row("variants with a verdict", spread.variants.to_string());
     row("variants that collapse", spread.collapsed.to_string());
     if let Some(share) = spread.share {
-        let percent = barrelstack::variants::words::percent;
+        let percent = words::percent;
         let [low, high] = spread.interval.map(percent);
         row(
             "share of variants that collapse, with its 95 % interval",
@@ -219,7 +219,7 @@ fn variants(summary: &Summary) -> Option<Table> {
         );
     }
     if let Some([low, high]) =
-        spread.range.map(|range| range.map(barrelstack::variants::words::percent))
+        spread.range.map(|range| range.map(words::percent))
     {
         row("range of this share over the uncertain constants", format!("{low} to {high}"));
     }
