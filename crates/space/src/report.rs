@@ -218,9 +218,7 @@ fn variants(summary: &Summary) -> Option<Table> {
             format!("{} ({low} to {high})", percent(share)),
         );
     }
-    if let Some([low, high]) =
-        spread.range.map(|range| range.map(words::percent))
-    {
+    if let Some([low, high]) = spread.range.map(|range| range.map(words::percent)) {
         row("range of this share over the uncertain constants", format!("{low} to {high}"));
     }
     let range = |Range { p05, p95, .. }: Range, decimals: usize| {

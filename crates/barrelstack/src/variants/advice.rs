@@ -8,6 +8,9 @@ use super::remedy::{Remedy, Tried};
 use super::words::percent;
 use crate::scenario::title::{counted, number};
 
+/// Phrase for the uncertain constants of the seats.
+const CONSTANTS: &str = "the friction, stiffness and damping of the seats, which are uncertain";
+
 impl Remedy {
     /// Describes the remedy, or states that none of the changes that were tried suffices.
     pub fn sentence(&self) -> String {
@@ -58,12 +61,14 @@ impl Remedy {
         };
         let stopped =
             if self.complete { "" } else { " The search for further changes was stopped." };
-        let over_constants = self.over_constants();
+        let confidence = self.confidence(!self.over_constants(CONSTANTS).is_empty());
+        // The sentence before names the constants, if there is one.
+        let constants = if confidence.is_empty() { CONSTANTS } else { "these constants" };
         format!(
-            "{}.{}{}{over_constants}{stopped}",
+            "{}.{}{confidence}{}{stopped}",
             capital(&sentence),
             self.not_enough(),
-            self.confidence(!over_constants.is_empty())
+            self.over_constants(constants)
         )
     }
 
@@ -99,8 +104,9 @@ impl Remedy {
     /// vary. Returns an empty string if a range is unknown.
     ///
     /// If two changes suffice, compares them draw by draw over random draws of these constants: names the change with
-    /// which fewer stacks fall in most of the draws, and states the share of these draws.
-    fn over_constants(&self) -> String {
+    /// which fewer stacks fall in most of the draws, and states the share of these draws. `constants` is the phrase for
+    /// the constants.
+    fn over_constants(&self, constants: &str) -> String {
         let range = |one: &Tried| {
             one.range.map(|[low, high]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high))
         };
@@ -136,7 +142,7 @@ impl Remedy {
             )
         });
         format!(
-            " With given values of these constants, {said} would fall (95 % range){}.",
+            " With given values of {constants}, {said} would fall (95 % range){}.",
             order.unwrap_or_default()
         )
     }
@@ -170,8 +176,7 @@ impl Remedy {
         };
         if averaged {
             format!(
-                " On average over the friction, stiffness and damping of the seats, which are uncertain, at most \
-                 {most} would fall (95 % confidence{choice})."
+                " On average over {CONSTANTS}, at most {most} would fall (95 % confidence{choice})."
             )
         } else {
             format!(" At most {most} would fall (95 % confidence{choice}).")

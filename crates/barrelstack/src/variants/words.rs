@@ -640,17 +640,20 @@ mod tests {
         assert!(none.starts_with("No verdict. Shaken along the barrels, none of 64"), "{none}");
     }
 
+    fn shown<'a>(view: Option<View>, kind: &'a str, spread: &'a Spread) -> ShownOutcome<'a> {
+        ShownOutcome { view, kind, spread }
+    }
+
     #[test]
     fn the_shown_run_is_named_with_its_outcome_beside_those_of_all_variants() {
-        let of = |view, kind, spread| ShownOutcome { view, kind, spread };
         let (few, many) = (spread(64, 12), Spread { typical: 15, ..spread(64, 53) });
         assert_eq!(
-            shown_run(15, &[of(None, "stable", &many)]),
+            shown_run(15, &[shown(None, "stable", &many)]),
             "The run that is shown is variant 15, the most typical of all: it stands, while 53 of 64 variants fall."
         );
         let both = [
-            of(Some(View::Transverse), "stable", &few),
-            of(Some(View::Longitudinal), "collapse", &many),
+            shown(Some(View::Transverse), "stable", &few),
+            shown(Some(View::Longitudinal), "collapse", &many),
         ];
         assert_eq!(
             shown_run(3, &both),
@@ -668,11 +671,11 @@ mod tests {
             ("invalid", 1, "it has no verdict"),
         ] {
             let all = spread(64, collapsed);
-            let said = shown_run(0, &[of(None, kind, &all)]);
+            let said = shown_run(0, &[shown(None, kind, &all)]);
             assert_eq!(said, format!("{named} {words}."));
         }
         let cut = Spread { standing_until: Some(1.0), ..spread(64, 0) };
-        let said = shown_run(0, &[of(None, "stable", &cut)]);
+        let said = shown_run(0, &[shown(None, "stable", &cut)]);
         assert_eq!(said, format!("{named} it stands until the runs end at 1.0 s."));
         assert_eq!(shown_run(0, &[]), "");
     }
