@@ -364,8 +364,7 @@ fn sentences_say_what_the_uncertain_constants_leave_open() {
         assert_eq!(found, format!("{seats}{words}"));
     }
     // The bound of the average share may be less than the end of the range with given values of the constants.
-    let bounded =
-        Tried { interval: Some([0.0, 0.06]), ..tried("height", 3, None, [0.0, 0.25]) };
+    let bounded = Tried { interval: Some([0.0, 0.06]), ..tried("height", 3, None, [0.0, 0.25]) };
     let found = Remedy { height: Some(bounded), complete: true, ..Remedy::default() };
     let sentence = found.sentence();
     let both = " On average over the friction, stiffness and damping of the seats, which are uncertain, at most 6 % of \

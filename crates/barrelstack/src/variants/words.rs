@@ -739,7 +739,7 @@ mod tests {
         let said = headline(&[(View::Longitudinal, &one)]);
         assert!(
             said.contains(&format!(
-                "{range}No single one of these constants changes this share by much."
+                "{range}No single one of these constants has a large and statistically significant effect."
             )),
             "{said}"
         );

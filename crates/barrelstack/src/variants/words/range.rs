@@ -30,7 +30,10 @@ pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
     }
     let decisive = spread.decisive().and_then(|one| Some((one, one.low_median_high()?)));
     let which = decisive.map_or_else(
-        || "No single one of these constants changes this share by much.".to_owned(),
+        || {
+            "No single one of these constants has a large and statistically significant effect."
+                .to_owned()
+        },
         |(one, [low, median, high])| {
             // The share at the median is stated if it lies well outside the shares at both ends.
             let (least, most) = (low.share.min(high.share), low.share.max(high.share));
