@@ -105,7 +105,7 @@ pub(crate) fn simulate(
     for Built { scenario, ground } in cases {
         in_space.push(matches!(ground, Shaking::Spatial(_)));
         match ground {
-            Shaking::Planar(ground) => planar.push(Prepared { scenario, ground }),
+            Shaking::Planar(ground) => planar.push(Prepared::shaken_by(scenario, ground)),
             Shaking::Spatial(ground) => spatial.push((scenario, ground)),
         }
     }
