@@ -338,7 +338,7 @@ fn sentences_say_what_the_uncertain_constants_leave_open() {
             complete: true,
             ..Remedy::default()
         };
-        found.sentence().split_once(" With given values of ").unwrap().1.to_owned()
+        found.sentence().split_once(" Depending on the true values of ").unwrap().1.to_owned()
     };
     let height = |high| Some(tried("height", 3, None, [0.0, high]));
     let straps = |high| Some(tried("straps", 5, Some(4e3), [0.0, high]));
@@ -363,12 +363,12 @@ fn sentences_say_what_the_uncertain_constants_leave_open() {
     ] {
         assert_eq!(found, format!("{seats}{words}"));
     }
-    // The bound of the average share may be less than the end of the range with given values of the constants.
+    // The bound of the average share may be less than the end of the range over the constants.
     let bounded = Tried { interval: Some([0.0, 0.06]), ..tried("height", 3, None, [0.0, 0.25]) };
     let found = Remedy { height: Some(bounded), complete: true, ..Remedy::default() };
     let sentence = found.sentence();
     let both = " On average over the friction, stiffness and damping of the seats, which are uncertain, at most 6 % of \
-                stacks with three levels would fall (95 % confidence). With given values of these constants, 0 to 25 % \
-                of stacks with three levels would fall (95 % range).";
+                stacks with three levels would fall (95 % confidence). Depending on the true values of these constants, 0 \
+                to 25 % of stacks with three levels would fall (95 % range).";
     assert!(sentence.ends_with(both), "{sentence}");
 }

@@ -570,7 +570,7 @@ fn observations_are_refused_at_their_place() {
         ControlFlow::Continue(())
     })
     .unwrap_err();
-    let words = "test 1: the scenario has no barrel \"B9.1\"; it has B1.1, B1.2, B2.1";
+    let words = "test 1: the scenario has no barrel \"B9.1\"; use one of B1.1, B1.2, B2.1";
     assert!(error.to_string().starts_with(words), "{error}");
 }
 
@@ -595,5 +595,5 @@ fn a_stack_that_stood_in_space_is_judged_in_space() {
     let warned = stood.warnings.iter().any(|text| text.contains("do not determine friction"));
     assert!(warned, "{:?}", stood.warnings);
     let unknown = found("mode,until (s),B7.1 fell (s)\nstands,0.1,stands\n").unwrap_err();
-    assert!(unknown.to_string().contains("has no barrel \"B7.1\"; it has B1.1"), "{unknown}");
+    assert!(unknown.to_string().contains("has no barrel \"B7.1\"; use one of B1.1"), "{unknown}");
 }

@@ -57,10 +57,10 @@ fn render_refuses_what_it_cannot_mean() {
     let out = folder.path().join("pictures");
     for (option, words) in [
         ("--dpi=5", &["--dpi", "from 20 to 1200"][..]),
-        ("--rate=0", &["--rate", "above zero"]),
+        ("--rate=0", &["--rate", "above 0"]),
         ("--size=9", &["--size", "64"]),
         ("--format=bmp", &["--format", "svg, png, pdf"]),
-        ("--to=-1", &["--to -1", "a later end time"]),
+        ("--to=-1", &["--to", "above 0"]),
     ] {
         let output = barrelstack(BLOCK.into_iter().chain([option, "--out", out.to_str().unwrap()]));
         refused(option, &output, &out, words);

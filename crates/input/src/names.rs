@@ -38,6 +38,11 @@ pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
     if let Some((_, name)) = habit {
         return Some((*name).to_owned());
     }
+    // The heading of a column without its unit, such as `dx` for `dx (m)`.
+    let headed = |name: &&&str| plain(name).split_once("_(").is_some_and(|(name, _)| name == word);
+    if let Some(name) = valid.iter().find(headed) {
+        return Some((*name).to_owned());
+    }
     let distance = |name: &str| {
         let name = plain(name);
         // Another order of the words counts as one mistake.
@@ -46,6 +51,7 @@ pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
     };
     valid
         .iter()
+        .filter(|name| !differ_in_digits(&word, &plain(name)))
         .map(|name| (distance(name), *name))
         .filter(|(distance, name)| *distance <= 1 + name.len().max(word.len()) / 4)
         .min_by_key(|(distance, _)| *distance)
@@ -56,6 +62,13 @@ pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
             let part = |name: &&&str| plain(name).contains(&word) || word.contains(&plain(name));
             valid.iter().filter(|_| word.len() >= 3).find(part).map(|name| (*name).to_owned())
         })
+}
+
+/// Returns `true` if two different names differ only in their digits, such as `B9.1` and `B1.1`. The one is then no
+/// slip of the pen for the other.
+fn differ_in_digits(one: &str, other: &str) -> bool {
+    let plain = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "");
+    one != other && plain(one) == plain(other)
 }
 
 /// Returns the end of an error message about a name that is not in the list `valid`: the most similar valid name, if
@@ -70,6 +83,9 @@ pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
 ///     "did you mean `two-barrel`? The names are single-bar, two-barrel"
 /// );
 /// assert_eq!(advice("shelf", &racks), "use one of single-bar, two-barrel");
+/// assert_eq!(advice("B9.1", &["B1.1", "B1.2"]), "use one of B1.1, B1.2");
+/// let columns = ["qx", "dx (m)"];
+/// assert!(advice("dx", &columns).starts_with("did you mean `dx (m)`?"));
 /// ```
 pub fn advice(word: &str, valid: &[&str]) -> String {
     let listed = match valid {

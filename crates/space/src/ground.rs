@@ -51,7 +51,7 @@ impl Ground {
         if recorded && second.is_none() {
             warnings.push(
                 "the record has only one horizontal component: the ground does not move in the other horizontal \
-                 direction"
+                 direction, so the share of stacks that fall may be too small; use a record with both components"
                     .to_owned(),
             );
         }

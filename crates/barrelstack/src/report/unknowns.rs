@@ -37,8 +37,8 @@ fn table(place: &str, spread: &Spread) -> Table {
     let share = |one: &Unknown, place| Cell::maybe(at(one, place).map(|at| percent(at.share)));
     Table::of(
         format!(
-            "{shaken}{} to {} of stacks collapse with given values of the uncertain constants of the seats (95 % \
-             range); {stated} collapse with all of these constants at their medians. For each constant, the table \
+            "{shaken}{} to {} of stacks collapse, depending on the true values of the uncertain constants of the seats \
+             (95 % range); {stated} collapse with all of these constants at their medians. For each constant, the table \
              gives the 5 % fractile, the median and the 95 % fractile, and for each of these values the share of \
              stacks that collapse, averaged over the other constants. The column “change” gives the difference \
              between the largest and the smallest share as the constant varies between these fractiles, with its 95 \

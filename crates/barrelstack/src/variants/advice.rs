@@ -142,7 +142,7 @@ impl Remedy {
             )
         });
         format!(
-            " With given values of {constants}, {said} would fall (95 % range){}.",
+            " Depending on the true values of {constants}, {said} would fall (95 % range){}.",
             order.unwrap_or_default()
         )
     }

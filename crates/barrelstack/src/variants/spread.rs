@@ -34,7 +34,7 @@ described! {
         /// of whether the variants without a verdict stand or collapse. This share is an average over the uncertain
         /// constants, and the interval is its sampling error.
         pub interval: [f64; 2] as "1",
-        /// Range of the share of stacks that collapse with given values of the uncertain constants of the seats: it
+        /// Range of the share of stacks that collapse, over the true values of the uncertain constants of the seats: it
         /// contains 95 % of these shares if the constants are drawn from their distributions, sampling error included;
         /// so it may be wider than `interval`. Null if there are fewer than 16 variants, if one of them has no verdict,
         /// or if they differ only in positions and masses.

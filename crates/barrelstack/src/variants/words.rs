@@ -725,9 +725,9 @@ mod tests {
         one.range = Some([0.17, 1.0]);
         one.decides = vec![unknown([0.1, 0.6])];
         let said = headline(&[(View::Transverse, &spread(64, 3)), (View::Longitudinal, &one)]);
-        let range = "The share of variants that fall is an average over the friction, stiffness and damping of the \
-                     seats, which are uncertain; with given values of these constants, 17 to 100 % of such stacks \
-                     fall in the direction along the barrels (95 % range). ";
+        let range = "Depending on the true values of the friction, stiffness and damping of the seats, which are \
+                     uncertain, 17 to 100 % of such stacks fall in the direction along the barrels (95 % range); the \
+                     share of variants that fall is an average over these values. ";
         let decides = "The stiffness of seats changes this share most: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.";
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
@@ -739,7 +739,7 @@ mod tests {
         let said = headline(&[(View::Longitudinal, &one)]);
         assert!(
             said.contains(&format!(
-                "{range}No single one of these constants has a large and statistically significant effect."
+                "{range}In this direction, no single one of these constants has a large and statistically significant effect."
             )),
             "{said}"
         );
@@ -753,8 +753,8 @@ mod tests {
         );
         one.range = Some([0.94, 1.0]);
         let said = headline_in_space(&one);
-        let little = "The friction, stiffness and damping of the seats are uncertain, but matter little: with given \
-                      values of these constants, 94 to 100 % of such stacks fall (95 % range).";
+        let little = "The friction, stiffness and damping of the seats are uncertain, but matter little: depending \
+                      on their true values, 94 to 100 % of such stacks fall (95 % range).";
         assert!(said.contains(little), "{said}");
         // A measurement that does not narrow the range is not recommended.
         one.range = Some([0.4, 1.0]);

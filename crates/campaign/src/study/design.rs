@@ -493,7 +493,7 @@ mod tests {
             ("[\"rack-ground\"]", "at least two factors"),
             (
                 "[\"rack-ground\", \"barrel\"]",
-                "there is no factor \"barrel\": use one of rack-ground, ",
+                "there is no factor \"barrel\": did you mean `barrel-rack`?",
             ),
             ("[\"rack-ground\", \"rack-ground\"]", "is listed twice"),
         ] {

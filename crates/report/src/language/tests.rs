@@ -234,11 +234,11 @@ fn sentences_about_variants_and_changes_are_translated() {
         ),
         (
             "On average over the friction, stiffness and damping of the seats, which are uncertain, at most 10 % of \
-             stacks with one level would fall (95 % confidence). With given values of these constants, 0 to 14 % of \
-             stacks with one level would fall (95 % range).",
+             stacks with one level would fall (95 % confidence). Depending on the true values of these constants, 0 to \
+             14 % of stacks with one level would fall (95 % range).",
             "En promedio sobre el roce, la rigidez y el amortiguamiento de los apoyos, que son inciertos, caería a lo \
-             más el 10 % de las pilas con un nivel (confianza del 95 %). Con valores dados de estas constantes, caería \
-             del 0 al 14 % de las pilas con un nivel (rango del 95 %).",
+             más el 10 % de las pilas con un nivel (confianza del 95 %). Según los valores verdaderos de estas constantes, \
+             caería del 0 al 14 % de las pilas con un nivel (rango del 95 %).",
         ),
         (
             "The stiffness of seats changes this share most: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.",

@@ -12,9 +12,9 @@ const NARROW: f64 = 0.1;
 const BEYOND: f64 = 0.1;
 
 /// Describes the range over which the share of collapses varies with the uncertain constants, and states which constant
-/// changes it most: "The share of variants that fall is an average over the friction, stiffness and damping of the
-/// seats, which are uncertain; with given values of these constants, 31 to 100 % of such stacks fall in the direction
-/// along the barrels (95 % range). The stiffness of seats changes this share most: …".
+/// changes it most: "Depending on the true values of the friction, stiffness and damping of the seats, which are
+/// uncertain, 31 to 100 % of such stacks fall in the direction along the barrels (95 % range); the share of variants that
+/// fall is an average over these values. The stiffness of seats changes this share most: …".
 ///
 /// The interval of the share in the verdict has another meaning: it is the sampling error of the share of variants.
 pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
@@ -24,15 +24,17 @@ pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
     let range = format!("{} to {to}", from.trim_end_matches(" %"));
     if high - low <= NARROW {
         return Some(format!(
-            "The friction, stiffness and damping of the seats are uncertain, but matter little: with given values of \
-             these constants, {range} of such stacks fall{place} (95 % range)."
+            "The friction, stiffness and damping of the seats are uncertain, but matter little: depending on \
+             their true values, {range} of such stacks fall{place} (95 % range)."
         ));
     }
     let decisive = spread.decisive().and_then(|one| Some((one, one.low_median_high()?)));
     let which = decisive.map_or_else(
         || {
-            "No single one of these constants has a large and statistically significant effect."
-                .to_owned()
+            let start = if view.is_some() { "In this direction, no" } else { "No" };
+            format!(
+                "{start} single one of these constants has a large and statistically significant effect."
+            )
         },
         |(one, [low, median, high])| {
             // The share at the median is stated if it lies well outside the shares at both ends.
@@ -46,8 +48,8 @@ pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
         },
     );
     Some(format!(
-        "The share of variants that fall is an average over the friction, stiffness and damping of the seats, which \
-         are uncertain; with given values of these constants, {range} of such stacks fall{place} (95 % range). \
+        "Depending on the true values of the friction, stiffness and damping of the seats, which are uncertain, {range} \
+         of such stacks fall{place} (95 % range); the share of variants that fall is an average over these values. \
          {which}"
     ))
 }

@@ -45,7 +45,7 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
         None if args.input.has_folder() => {
             bail!(
                 "the input is a folder or an archive of several records, whose measures are written to a table: \
-                 state the folder of this table with --out DIR"
+                 give the folder of this table with --out DIR"
             )
         }
         None => args.folder.tables.need(false)?,
