@@ -113,7 +113,7 @@ fn what_is_wrong_with_an_element_is_told_at_its_place() {
     };
     let good = "name = \"a\"\nkind = \"rod\"\nstiffness = \"1 kN/m\"\n";
     let said = refused(&format!("{good}between = [\"ball\", \"bell\"]"));
-    assert!(said.contains("no body is called \"bell\"; the bodies are ball, ground"), "{said}");
+    assert!(said.contains("no body is called \"bell\"; did you mean `ball`?"), "{said}");
     let said = refused(&format!("{good}between = [\"ball\", \"ball\"]"));
     assert!(said.contains("to itself"), "{said}");
     let said = refused(&format!("{good}gap = \"1 cm\"\nbetween = [\"ball\", \"ground\"]"));

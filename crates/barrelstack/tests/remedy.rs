@@ -1,5 +1,6 @@
 //! The remedy of a stack: whether it suffices, and its wording.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -294,13 +295,10 @@ fn the_progress_of_a_search_has_names_and_totals() {
             ControlFlow::Continue(())
         });
         let (found, seen) = (found.unwrap().unwrap(), seen.into_inner().unwrap());
-        let mut stacks: Vec<&str> = Vec::new();
+        // Heights and straps are tried at the same time, so their reports may arrive in any order.
+        let mut stacks: BTreeMap<usize, &str> = BTreeMap::new();
         for (stack, (number, candidates, done, total), words) in &seen {
-            if !stacks.contains(&stack.as_str()) {
-                stacks.push(stack);
-            }
-            // Changes are numbered in the order in which they are first tried.
-            assert_eq!(stacks.get(number - 1), Some(&stack.as_str()));
+            assert_eq!(*stacks.entry(*number).or_insert(stack), stack);
             assert_eq!((*candidates, *total), (found.candidates as usize, of));
             assert!(number <= candidates && done <= total, "{words}");
             assert_eq!(
@@ -310,8 +308,11 @@ fn the_progress_of_a_search_has_names_and_totals() {
                 )
             );
         }
-        assert_eq!(stacks.first(), Some(&"a stack of two levels"));
-        assert_eq!(stacks.len(), found.tried.len(), "{stacks:?}");
+        let numbers: Vec<usize> = stacks.keys().copied().collect();
+        assert_eq!(numbers, (1..=found.tried.len()).collect::<Vec<_>>(), "{stacks:?}");
+        let names: BTreeSet<&str> = stacks.into_values().collect();
+        assert!(names.contains("a stack of two levels"), "{names:?}");
+        assert_eq!(names.len(), found.tried.len(), "{names:?}");
     }
 }
 

@@ -85,7 +85,7 @@ fn of_former_and_present_keys_the_upper_layer_holds() {
     let error = Scenario::builtin("demo-napa", &["imperfections.kind=some".to_owned()]);
     let sentence = error.unwrap_err().sentence();
     assert!(
-        sentence.contains("replace the key by `imperfections.drawn` and `unknowns.drawn`"),
+        sentence.contains("replace it by `imperfections.drawn` and `unknowns.drawn`"),
         "{sentence}"
     );
 }
