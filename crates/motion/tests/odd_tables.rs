@@ -273,7 +273,7 @@ fn factors_in_headers_are_refused_and_a_factor_of_one_is_none() {
         for unit in [None, Some(AccelerationUnit::G)] {
             let options = ReadOptions { unit, ..ReadOptions::default() };
             let error = read(text.as_bytes(), "a.txt", &options).unwrap_err().to_string();
-            assert!(error.contains("without a factor"), "{stated}: {error}");
+            assert!(error.contains("need not be multiplied by a factor"), "{stated}: {error}");
         }
     }
     for name in ["acc (0.01 m/s2)", "acc (10^-3 g)", "acc (g x 100)", "acc*100 (g)", "acc (g) * 10"]
