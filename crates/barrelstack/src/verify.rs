@@ -241,9 +241,9 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
             let per_seat = seats.iter().all(|interface| interface.basis == Basis::Seat);
             if stack.view == View::Transverse && !per_seat {
                 return Err(
-                    "contact constants are stated per length, and in the transverse section a cradle support, a \
-                     beam corner or a rolling barrel touches with a single node that counts for one node spacing, \
-                     so half the spacing would make these contacts softer"
+                    "contact constants are stated per unit length, and in the transverse section a cradle support, a \
+                     beam corner or a rolling barrel touches with a single node, whose stiffness is proportional to \
+                     the node spacing, so halving the spacing would make these contacts softer"
                         .into(),
                 );
             }

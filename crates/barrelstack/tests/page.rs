@@ -33,7 +33,7 @@ fn a_page_of_both_planes_states_the_run_that_it_shows_and_both_planes() {
         answer(&scenario, RunChoice::Number(2), &mut |_| ControlFlow::Continue(())).unwrap();
     let page = answer_document(&answer);
     let shown = &page.verdict.shown;
-    let run = "The run that is shown is variant 2";
+    let run = "The run that is shown is that of variant 2";
     let fates = ": across the barrels, it stands until the runs end at 1.0 s; along the barrels, it stands until the \
                  runs end at 1.0 s.";
     assert!(shown.starts_with(run) && shown.ends_with(fates), "{shown}");
@@ -56,10 +56,10 @@ fn a_page_of_both_planes_states_the_run_that_it_shows_and_both_planes() {
     }
     for sentence in [
         "Largest forces at every interface, in the run that is shown",
-        "Force in the run that is shown, on the upper body",
+        "Force on the upper body of each pair in the run that is shown",
         "Demands on the stack in the run that is shown",
         "The range of the first loss of a seat is that of all variants that collapse while they are shaken.",
-        "The range of the first fall is that of those variants among them in which a barrel falls",
+        "The times of the first fall are only those of variants in which a barrel falls",
         "stress amplification of a bottom barrel, ratio of largest stresses",
         "stress amplification of a bottom barrel, ratio of average stresses",
         "Either ratio may be the larger one.",

@@ -372,8 +372,8 @@ impl Estimate {
 }
 
 impl Change {
-    /// Returns the mean value of each layout over pairs of values (first layout, second layout), the mean of second
-    /// minus first, and the confidence interval of this mean difference.
+    /// Compares two layouts by pairs of values, of which the first belongs to the first layout. Returns the two mean
+    /// values, the mean of the differences (second value minus first value), and the confidence interval of this mean.
     ///
     /// All values lie between 0 and `most`. There is no interval if `most` is `None`, or if there are fewer than two
     /// pairs. The confidence level applies jointly to `tries` intervals, one for each layout that is compared with the

@@ -84,7 +84,8 @@ pub(crate) struct Body {
     pub(crate) items: Vec<Item>,
 }
 
-/// A body of [`Item::Defined`], by its `id`, at a pose: x and z (m), and the counterclockwise angle (rad).
+/// A body at a pose: x and z (m), and the counterclockwise angle (rad). `id` is the name under which
+/// [`Item::Defined`] defines the body.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Placed {
     pub(crate) id: String,

@@ -97,9 +97,9 @@ pub fn document(answer: &Answer) -> Document {
                 Block::Table(demand_table(&summary.demands, &summary.demands_whole_run)),
             ]);
             let table = interface_table(
-                "Force in the run that is shown, on the upper body, or on the body that is named first: the value of \
-                 largest magnitude until the first loss of a seat, and the value of largest magnitude over the whole \
-                 run, falls included. Each horizontal force is the resultant of its two horizontal components.",
+                "Force on the upper body of each pair in the run that is shown, or on the body named first if neither \
+                 body rests on the other. Two forces are given: the one of largest magnitude until the first loss of \
+                 a seat, and the one of largest magnitude over the whole run, falls included. Each horizontal force is the resultant of its two horizontal components.",
                 &summary.interfaces,
             );
             blocks.extend([heading("Forces at the seats"), Block::Table(table)]);

@@ -154,8 +154,8 @@ fn the_report_on_paper_has_the_headline_and_the_views_of_the_page() {
     for words in [
         "before the first loss of a seat or, if no seat is lost, during the whole run",
         "until the first loss of a seat or, if no seat is lost, over the whole run",
-        "Force in the run that is shown, on the upper body",
-        "The range of the first fall is that of those variants among them in which a barrel falls",
+        "Force on the upper body of each pair in the run that is shown",
+        "The times of the first fall are only those of variants in which a barrel falls",
     ] {
         assert!(page.contains(words), "{words}");
     }

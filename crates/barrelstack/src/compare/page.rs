@@ -225,7 +225,6 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
                 ": the difference is not statistically significant"
             };
             let both = match pair.both {
-                0 => "none collapses".to_owned(),
                 1 => "1 collapses".to_owned(),
                 some => format!("{some} collapse"),
             };

@@ -88,10 +88,10 @@ fn ground(run: &Run) -> Option<History> {
 }
 
 /// States over which variants the ranges of results are taken.
-pub const RANGES: &str = "Ranges span the 5th to the 95th percentile of the variants. The range of the first loss of \
-                          a seat is that of all variants that collapse while they are shaken. The range of the first \
-                          fall is that of those variants among them in which a barrel falls, so its ends may lie \
-                          before those of the first loss of a seat.";
+pub const RANGES: &str = "Ranges span the 5th to the 95th percentile of the variants. The times of the first loss of \
+                          a seat are those of all variants that collapse while they are shaken. The times of the \
+                          first fall are only those of variants in which a barrel falls, so their range may start or \
+                          end earlier than the range of the first loss of a seat.";
 
 /// Tabulates the statistics of all variants, with one column per plane.
 pub(super) fn variants(summary: &Summary) -> Vec<Block> {

@@ -378,9 +378,9 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
         return Vec::new();
     }
     let caption = format!(
-        "Force in the run that is shown, on the upper body, or on the body named first if neither rests on the \
-         other; positive up and to the right. Two forces are given: the one of largest magnitude until the first \
-         loss of a seat, and the one of largest magnitude over the whole run, falls included.{}",
+        "Force on the upper body of each pair in the run that is shown, or on the body named first if neither body \
+         rests on the other; positive up and to the right. Two forces are given: the one of largest magnitude until \
+         the first loss of a seat, and the one of largest magnitude over the whole run, falls included.{}",
         slice(run)
     );
     let table = interface_table(&caption, &summary.interfaces);

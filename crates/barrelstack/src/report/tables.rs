@@ -11,10 +11,10 @@ fn kilonewtons(value: f64) -> Cell {
 }
 
 /// Explains the two stress amplifications, of which either may be the larger one.
-const TWO_RATIOS: &str = " The ratio of largest stresses divides the largest stress on a barrel by the largest \
-                          stress on it at rest, which may occur at another point. The ratio of average stresses \
-                          divides the average of the largest stress at each point by the average at rest, over the \
-                          part of the boundary that is loaded at rest. Either ratio may be the larger one.";
+const TWO_RATIOS: &str = " The ratio of largest stresses is the largest stress on a barrel, divided by its largest \
+                          stress at rest; the two may occur at different points. For the ratio of average stresses, \
+                          the largest stress at each point, and the stress at rest, are first averaged over the part \
+                          of the boundary that is loaded at rest. Either ratio may be the larger one.";
 
 /// `true` if both stress amplifications are known.
 fn both(demands: &Demands) -> bool {

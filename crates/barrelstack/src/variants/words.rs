@@ -255,7 +255,8 @@ pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
     };
     let mut sentences = Vec::new();
     let planes = summary.spreads();
-    let typical = if summary.variant == spread.typical { ", the most typical of all" } else { "" };
+    let typical =
+        if summary.variant == spread.typical { ", the most typical of all runs" } else { "" };
     let named = |number: u32| match number {
         0 => "the stack as stated".to_owned(),
         number => format!("variant {number}"),
@@ -263,7 +264,7 @@ pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
     let decides = planes.iter().find(|(view, _)| Some(view.name()) == summary.view);
     let plane = decides.filter(|_| planes.len() > 1).map(|(view, _)| format!("{}, ", view.words()));
     sentences.push(format!(
-        "The run that is shown is {}{typical}; {}{} is the gentlest and {} the worst.",
+        "The run that is shown is that of {}{typical}; {}{} is the gentlest and {} the worst.",
         named(summary.variant),
         plane.unwrap_or_default(),
         named(spread.gentlest),
@@ -649,7 +650,8 @@ mod tests {
         let (few, many) = (spread(64, 12), Spread { typical: 15, ..spread(64, 53) });
         assert_eq!(
             shown_run(15, &[shown(None, "stable", &many)]),
-            "The run that is shown is variant 15, the most typical of all: it stands, while 53 of 64 variants fall."
+            "The run that is shown is that of variant 15, the most typical of all runs: the stack stands, while 53 of 64 \
+             variants fall."
         );
         let both = [
             shown(Some(View::Transverse), "stable", &few),
@@ -657,18 +659,19 @@ mod tests {
         ];
         assert_eq!(
             shown_run(3, &both),
-            "The run that is shown is variant 3: across the barrels, it stands, while 12 of 64 variants fall; along \
-             the barrels, it falls, as do 53 of 64 variants."
+            "The run that is shown is that of variant 3: across the barrels, the stack stands, while 12 of 64 variants \
+             fall; along the barrels, the stack falls, as do 53 of 64 variants."
         );
-        let named = "The run that is shown is the stack as stated, the most typical of all:";
+        let named =
+            "The run that is shown is that of the stack as stated, the most typical of all runs:";
         for (kind, collapsed, words) in [
-            ("stable", 0, "it stands"),
-            ("stable", 1, "it stands, while 1 of 64 variants falls"),
-            ("stable", 64, "it stands, while all 64 variants fall"),
-            ("collapse", 64, "it falls"),
-            ("collapse", 1, "it falls, as does 1 of 64 variants"),
-            ("collapse", 0, "it falls, while none of 64 variants falls"),
-            ("invalid", 1, "it has no verdict"),
+            ("stable", 0, "the stack stands"),
+            ("stable", 1, "the stack stands, while 1 of 64 variants falls"),
+            ("stable", 64, "the stack stands, while all 64 variants fall"),
+            ("collapse", 64, "the stack falls"),
+            ("collapse", 1, "the stack falls, as does 1 of 64 variants"),
+            ("collapse", 0, "the stack falls, while none of 64 variants falls"),
+            ("invalid", 1, "the stack has no verdict"),
         ] {
             let all = spread(64, collapsed);
             let said = shown_run(0, &[shown(None, kind, &all)]);
@@ -676,7 +679,7 @@ mod tests {
         }
         let cut = Spread { standing_until: Some(1.0), ..spread(64, 0) };
         let said = shown_run(0, &[shown(None, "stable", &cut)]);
-        assert_eq!(said, format!("{named} it stands until the runs end at 1.0 s."));
+        assert_eq!(said, format!("{named} the stack stands until the runs end at 1.0 s."));
         assert_eq!(shown_run(0, &[]), "");
     }
 

@@ -351,14 +351,14 @@ fn blocks(all: &Heights) -> Vec<Block> {
         heading("How high is safe"),
         Block::Table(card(all)),
         text(format!(
-            "Each cell shows the share of stacks that collapse, and in brackets an interval of the chance of \
-             collapse. {}The chance is above the lower end of the interval with 95 % confidence, and below its upper \
-             end with 95 % confidence. ✓ low: a share of at most {:.0} %, and an upper end of at most {:.0} %. If the \
-             chance of collapse of a stack is above {:.0} %, at most one of 20 studies rates the stack low. ! medium: \
+            "Each cell shows the share of stacks that collapse and, in brackets, a confidence interval for the chance \
+             of collapse. {}The chance is above the lower end of the interval with 95 % confidence, and below its \
+             upper end with 95 % confidence. ✓ low: a share of at most {:.0} %, and an upper end of at most {:.0} %. If the \
+             chance of collapse of a stack is above {:.0} %, at most one of 20 studies calls this chance low. ! medium: \
              a share of at most {:.0} %. ✗ high: all other results. These limits were chosen by judgment.",
             in_planes(
                 all,
-                "Of both directions, the cell shows the direction with the higher upper end. ",
+                "The cell is for the direction of shaking whose interval has the higher upper end. ",
                 ""
             ),
             100.0 * LOW.0,

@@ -13,21 +13,22 @@ pub struct ShownOutcome<'a> {
     pub spread: &'a Spread,
 }
 
-/// States which run is shown, and its outcome beside those of all variants: "The run that is shown is variant 15, the
-/// most typical of all: it stands, while 12 of 64 variants fall.". Empty without variants.
+/// States which run is shown, and its outcome beside those of all variants: "The run that is shown is that of variant
+/// 15, the most typical of all runs: the stack stands, while 12 of 64 variants fall.". Empty without variants.
 pub fn shown_run(number: u32, outcomes: &[ShownOutcome<'_>]) -> String {
     let Some(first) = outcomes.first() else { return String::new() };
     let run = match number {
         0 => "the stack as stated".to_owned(),
         number => format!("variant {number}"),
     };
-    let typical = if number == first.spread.typical { ", the most typical of all" } else { "" };
+    let typical =
+        if number == first.spread.typical { ", the most typical of all runs" } else { "" };
     let clause = |one: &ShownOutcome<'_>| {
         let place = one.view.map_or_else(String::new, |view| format!("{}, ", view.words()));
         format!("{place}{}", fate(one))
     };
     let clauses: Vec<String> = outcomes.iter().map(clause).collect();
-    format!("The run that is shown is {run}{typical}: {}.", clauses.join("; "))
+    format!("The run that is shown is that of {run}{typical}: {}.", clauses.join("; "))
 }
 
 /// Describes the outcome of the run and, if some variants have another outcome, the number of variants that fall.
@@ -41,13 +42,15 @@ fn fate(one: &ShownOutcome<'_>) -> String {
     let fall = if plural { "fall" } else { "falls" };
     match (one.kind, standing_until) {
         ("stable", Some(until)) if collapsed == 0 => {
-            format!("it stands until the runs end at {until:.1} s")
+            format!("the stack stands until the runs end at {until:.1} s")
         }
-        ("stable", _) if collapsed == 0 => "it stands".to_owned(),
-        ("stable", _) => format!("it stands, while {counted} {fall}"),
-        ("collapse", _) if collapsed == variants => "it falls".to_owned(),
-        ("collapse", _) if collapsed == 0 => format!("it falls, while {counted} {fall}"),
-        ("collapse", _) => format!("it falls, as {} {counted}", if plural { "do" } else { "does" }),
-        _ => "it has no verdict".to_owned(),
+        ("stable", _) if collapsed == 0 => "the stack stands".to_owned(),
+        ("stable", _) => format!("the stack stands, while {counted} {fall}"),
+        ("collapse", _) if collapsed == variants => "the stack falls".to_owned(),
+        ("collapse", _) if collapsed == 0 => format!("the stack falls, while {counted} {fall}"),
+        ("collapse", _) => {
+            format!("the stack falls, as {} {counted}", if plural { "do" } else { "does" })
+        }
+        _ => "the stack has no verdict".to_owned(),
     }
 }
