@@ -34,8 +34,8 @@ fn a_page_of_both_planes_states_the_run_that_it_shows_and_both_planes() {
     let page = answer_document(&answer);
     let shown = &page.verdict.shown;
     let run = "The run that is shown is that of variant 2";
-    let fates = ": across the barrels, it stands until the runs end at 1.0 s; along the barrels, it stands until the \
-                 runs end at 1.0 s.";
+    let fates = ": across the barrels, the stack stands until the runs end at 1.0 s; along the barrels, the stack stands \
+                 until the runs end at 1.0 s.";
     assert!(shown.starts_with(run) && shown.ends_with(fates), "{shown}");
     // The sentence is above the pictures, in both formats and both languages.
     let place = |text: &str, what: &str| text.find(what).unwrap_or_else(|| panic!("no {what}"));
@@ -58,7 +58,7 @@ fn a_page_of_both_planes_states_the_run_that_it_shows_and_both_planes() {
         "Largest forces at every interface, in the run that is shown",
         "Force on the upper body of each pair in the run that is shown",
         "Demands on the stack in the run that is shown",
-        "The range of the first loss of a seat is that of all variants that collapse while they are shaken.",
+        "The times of the first loss of a seat are those of all variants that collapse while they are shaken.",
         "The times of the first fall are only those of variants in which a barrel falls",
         "stress amplification of a bottom barrel, ratio of largest stresses",
         "stress amplification of a bottom barrel, ratio of average stresses",

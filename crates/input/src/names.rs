@@ -64,11 +64,12 @@ pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
         })
 }
 
-/// Returns `true` if two different names differ only in their digits, such as `B9.1` and `B1.1`. The one is then no
-/// slip of the pen for the other.
+/// Returns `true` if two names are different numbers after the same letter, such as the bodies `B9.1` and `B1.1`. The
+/// one is then no slip of the pen for the other.
 fn differ_in_digits(one: &str, other: &str) -> bool {
     let plain = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "");
-    one != other && plain(one) == plain(other)
+    let letters = one.chars().filter(char::is_ascii_alphabetic).count();
+    letters <= 1 && one != other && plain(one) == plain(other)
 }
 
 /// Returns the end of an error message about a name that is not in the list `valid`: the most similar valid name, if

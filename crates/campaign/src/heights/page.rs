@@ -242,7 +242,7 @@ fn over_constants_table(all: &Heights) -> Table {
              which this chance depends most.{}",
             in_planes(
                 all,
-                " Of both directions, the cell shows the direction with the higher upper end.",
+                " The cell is for the direction of shaking whose interval has the higher upper end.",
                 ""
             )
         ),
