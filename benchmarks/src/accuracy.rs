@@ -17,10 +17,10 @@ const DROP: f64 = 0.2;
 /// Interval (s) between the times at which trajectories are compared.
 const SAMPLE: f64 = 4e-3;
 
-/// Largest relative error of the displacements before the fall for which a step counts as precise
-/// enough.
+/// Limit of the relative error of the displacements before the fall. A time step is precise enough only if its error is
+/// below this limit.
 const MOST_ERROR: f64 = 0.01;
-/// Largest error (s) of the time of the fall for which a step counts as precise enough.
+/// Limit of the error (s) of the time of the fall. A time step is precise enough only if its error is below this limit.
 const MOST_DELAY: f64 = 0.010;
 
 /// Prints the table and returns the longest step (s) of the default method that is precise enough.

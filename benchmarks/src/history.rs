@@ -1,4 +1,4 @@
-//! Work counts of a few runs, compared with those of the last release.
+//! Counts of the work that a few runs take, compared with the counts of the last release.
 //!
 //! The counts do not depend on the machine, so added work shows on every machine. Cases and counts
 //! are taken from two test suites: `crates/barrelstack/tests/golden` for whole runs, and

@@ -8,7 +8,7 @@ use barrelstack_validation::drive::Shake;
 use crate::scene::Scene;
 use crate::time;
 
-/// Number of cases in the batch, which exceeds the number of lanes of any bundle.
+/// Number of cases in the batch. It exceeds the number of lanes of the widest bundle.
 const CASES: usize = 64;
 
 /// Simulated time (s), during which the stack stands.
@@ -46,7 +46,7 @@ pub(crate) fn against_width(scene: &Scene, step: f64) {
     }
 }
 
-/// Runs cases that differ in the amplitude of the ground motion.
+/// Task that runs cases in lanes. The cases differ in the amplitude of the ground motion.
 struct InLanes<'a> {
     scene: &'a Scene,
     step: f64,

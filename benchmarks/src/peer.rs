@@ -1,4 +1,5 @@
-//! The same planar scenes in the game engines Rapier, in single and in double precision, and Box2D.
+//! Runs planar scenes in the game engines Rapier (in single and in double precision) and Box2D, for comparison with
+//! this program.
 
 use barrelstack_dynamics::{Model, Nodes, Planar, Shape, State, Vec2};
 
@@ -6,13 +7,14 @@ use crate::time;
 
 use crate::Failure;
 
-/// Time step (s) of a game at 240 Hz, which is the longest step with which stacks stand in Rapier.
+/// Time step (s) of a game that computes 240 steps per second. This is the longest step with which stacks stand in
+/// Rapier.
 pub(crate) const COARSE: f64 = 1.0 / 240.0;
 
-/// Half the width (m) of the floor, which fallen barrels do not leave.
+/// Half the width (m) of the floor, which is so wide that fallen barrels stay on it.
 const FLOOR: f32 = 100.0;
 
-/// A scene: bodies at rest on moving ground.
+/// A scene: bodies that are at rest until the ground moves.
 pub(crate) struct Stage<'a> {
     pub(crate) model: &'a Model<Planar>,
     pub(crate) rest: &'a State<Planar>,
@@ -34,8 +36,8 @@ pub(crate) struct Cost {
     pub(crate) dropped: f64,
 }
 
-/// Measures all engines with a time step (s), each in its default settings otherwise; the cheapest
-/// first.
+/// Measures every engine with a time step (s) and otherwise with its default settings. Returns the costs in ascending
+/// order.
 pub(crate) fn costs(stage: &Stage<'_>, step: f64) -> Result<Vec<Cost>, Failure> {
     flat::shake(stage, step)?;
     let cost = |engine, run: &dyn Fn() -> f64| {
@@ -187,7 +189,7 @@ mod flat {
     use super::{FLOOR, Piece, Stage, Vec2, pieces};
     use crate::Failure;
 
-    /// Number of parts of a step that Box2D recommends.
+    /// Number of substeps per step that Box2D recommends.
     const PARTS: i32 = 4;
 
     /// Largest number of corners of a polygon in Box2D.

@@ -1,4 +1,4 @@
-//! The same three-dimensional scene in the game engine Rapier.
+//! Simulates a three-dimensional scene of this program in the game engine Rapier, for comparison.
 
 use barrelstack_dynamics::{
     Model, Nodes, Placed, Quaternion, Rotation3, Solid, Spatial, State, Vec3,
@@ -33,7 +33,8 @@ pub(crate) struct Found {
     pub(crate) dropped: f64,
 }
 
-/// Measures Rapier with a time step (s), in its default settings otherwise.
+/// Runs the scene in Rapier with the given time step (s) and otherwise default settings, and measures the cost of the
+/// run and the largest drop.
 pub(crate) fn cost(stage: &Stage<'_>, step: f64) -> Found {
     let mut dropped = 0.0;
     let spent = time::least_of(3, || dropped = shake(stage, step));

@@ -14,7 +14,7 @@ use crate::{Failure, space, user};
 /// Samples per second of processor time.
 const RATE: &str = "1997";
 
-/// The kinds of work, by name, with their titles.
+/// Name and title of each kind of work.
 const KINDS: [(&str, &str); 4] = [
     ("standing", "plane, study standing"),
     ("collapse", "plane, study collapsing"),
@@ -52,7 +52,7 @@ const PHASES: [(&str, &str); 23] = [
 
 /// Phase of all other code of the engine: verdicts, stresses, recordings.
 const OBSERVERS: &str = "observers";
-/// Phase of code that copies one lane, if it is not part of another phase, and the file of this code.
+/// Phase of code that copies one lane and is not part of another phase. [`LANEWISE`] is the file of this code.
 const LANES: &str = "filling and emptying of lanes";
 const LANEWISE: &str = "dynamics/src/lanes/lanewise.rs";
 /// Phase of code that does not belong to the engine.
@@ -129,9 +129,9 @@ fn shares(kind: &str) -> Result<BTreeMap<&'static str, f64>, Failure> {
     Ok(shares)
 }
 
-/// Returns the number of samples at every address of a program file; `None` for other files.
+/// Returns the number of samples at every address of a program file. The key `None` counts the samples in other files.
 ///
-/// `offset` is the difference between addresses and places in the file.
+/// `offset` is the address of machine code minus its position in the file ([`offset`]).
 fn addresses(script: &str, program: &Path, offset: u64) -> HashMap<Option<u64>, u64> {
     let name = program.to_string_lossy();
     // Where parts of the file are in memory: start, length and place in the file.
@@ -162,7 +162,7 @@ fn addresses(script: &str, program: &Path, offset: u64) -> HashMap<Option<u64>, 
     counts
 }
 
-/// Returns the difference between the addresses of the machine code and its place in the program file.
+/// Returns the address of the machine code minus its position in the program file (bytes).
 fn offset(program: &Path) -> Result<u64, Failure> {
     let headers = output(Command::new("readelf").arg("-lW").arg(program))?;
     let number = |word: &str| u64::from_str_radix(word.trim_start_matches("0x"), 16).ok();

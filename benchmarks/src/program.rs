@@ -1,4 +1,5 @@
-//! The demo as a user runs it: the released program as a process, by the clock.
+//! Measures the demo as a user runs it: runs the command-line program as a process, and measures wall-clock times and
+//! processor times.
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -10,16 +11,17 @@ use crate::{Failure, time};
 /// Environment variable that states the path of a program to measure; without it, the program is built.
 const PROGRAM: &str = "BARRELSTACK_PROGRAM";
 
-/// Start of the line that reports the first verdict.
+/// Text by which the line with the first verdict is recognized.
 const FIRST: &str = "after the first";
 
-/// Times (s) by the clock, from the start of the command.
+/// Shortest times (s) of the demo: wall-clock times from the start of the command, and processor times.
 pub(crate) struct Demo {
-    /// The first sentence.
+    /// Time until the first verdict is printed.
     pub(crate) first: f64,
-    /// The whole answer without a page, with the change that would have prevented the collapse.
+    /// Time until the command ends without writing a page. The answer includes the change that would have prevented the
+    /// collapse.
     pub(crate) answer: f64,
-    /// The whole answer with a page, until the command ends.
+    /// Time until the command ends, if it writes a page.
     pub(crate) page: f64,
     /// Least processor time (s) of all cores together, without a page and with one.
     pub(crate) spent: [f64; 2],
@@ -67,7 +69,7 @@ pub(crate) fn demo(program: &Path, repeats: usize) -> Result<Demo, Failure> {
     Ok(least)
 }
 
-/// Returns the time (s) of `barrelstack protect` on the demo: by the clock, and of the processor.
+/// Returns the wall-clock time (s) and the processor time (s) of `barrelstack protect` on the demo.
 pub(crate) fn protect(program: &Path) -> Result<(f64, f64), Failure> {
     let folder = std::env::temp_dir().join(format!("barrelstack-protect-{}", std::process::id()));
     let out = folder.to_string_lossy().into_owned();
@@ -76,7 +78,7 @@ pub(crate) fn protect(program: &Path) -> Result<(f64, f64), Failure> {
     Ok((times.end, times.spent))
 }
 
-/// Times (s) of one command: until the first verdict and until the end, both by the clock; then the processor time.
+/// Times (s) of one command: the wall-clock times until the first verdict and until the end, and the processor time.
 struct Times {
     first: Option<f64>,
     end: f64,

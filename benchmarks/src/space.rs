@@ -11,11 +11,11 @@ use barrelstack_space::{Ground, run};
 
 use crate::{Failure, time};
 
-/// The demo's racks on four levels, under half of the demo's motion, in which the stack stands.
+/// Changes to the demo after which its stack stands: four levels, and a motion scaled by one half.
 const STANDING: [&str; 4] =
     ["stack.view=spatial", "stack.levels=4", "motion.scale.factor=0.5", "run.duration='10 s'"];
 
-/// Number of standing cases: twice the number of lanes for each of two cores.
+/// Number of cases of the stack that stands. If a register has eight lanes, each lane of two cores runs two cases.
 pub(crate) const CASES: u32 = 32;
 
 /// Measured time of some cases on all cores.
@@ -56,13 +56,13 @@ pub(crate) fn lanes() -> Result<Many, Failure> {
     many(&standing()?, CASES)
 }
 
-/// Builds and settles the same variants; their runs end at once.
+/// Builds and settles the same variants as [`lanes`], and runs each for only 1 ms.
 pub(crate) fn settling() -> Result<Many, Failure> {
     let [view, levels, scale, _] = STANDING;
     many(&scenario(&[view, levels, scale, "run.duration='1 ms'"])?, CASES)
 }
 
-/// Runs a number of three-dimensional variants of the demo on all cores, as for its answer.
+/// Runs three-dimensional variants of the demo on all cores, each only until its verdict is known.
 pub(crate) fn demo(cases: u32) -> Result<Many, Failure> {
     many(&scenario(&["stack.view=spatial"])?, cases)
 }

@@ -1,5 +1,5 @@
-//! Performance targets and present measurements. Every row has the cheapest peer that was run on the
-//! same scene in the same process, and the plain loop of [`plain`](crate::plain).
+//! Performance targets and present measurements. Where available, a row also states the cheapest peer that was run on
+//! the same scene in the same process, and the plain loop of [`plain`](crate::plain).
 
 use std::f64::consts::TAU;
 
@@ -14,11 +14,12 @@ use crate::{Failure, lanes, peer, peer3, plain, program, space, user};
 /// Time step (s) of the row that measures the library.
 const STEP: f64 = 0.5e-3;
 
-/// Number of cases in the planar study of the table, and their simulated time (s).
+/// Number of cases in the planar study of the table, and the simulated time (s) of each case.
 const MANY: f64 = 10_000.0;
 const LENGTH: f64 = 20.0;
 
-/// Number of three-dimensional cases of the table, and how many of them are run.
+/// Number of variants in the three-dimensional study of the table, and the number of variants that are run; the time of
+/// the study is extrapolated from them.
 const MANY_IN_SPACE: f64 = 1000.0;
 const IN_SPACE: u32 = 32;
 
@@ -31,7 +32,7 @@ const ANGLE: f64 = 20.0;
 /// Friction coefficients of the peers, on the ground and between bodies.
 const FRICTION: [f64; 2] = [0.5, 0.22];
 
-/// Measured quantity, in the unit of its target.
+/// Measured quantity of a row, which is compared with the target of the row.
 enum Figure {
     /// Processor time (s) per simulated second, printed in ms; less is better.
     Cost(f64),
@@ -57,8 +58,9 @@ impl Row {
         Self { what: what.into(), figure, target, peer: None, plain: None }
     }
 
-    /// Adds the cheapest peer and the plain loop, by their costs (s) per simulated second; `times` is the
-    /// simulated time of the row per core.
+    /// Adds the times of the cheapest peer and of the plain loop for the work of this row. `peers` (the cheapest first)
+    /// and `plain` state costs (s) per simulated second; they are multiplied by `times`, the simulated time (s) of the
+    /// row per core.
     fn beside(mut self, peers: &[peer::Cost], plain: Option<f64>, times: f64) -> Self {
         self.peer = peers.first().map(|peer| (peer.engine.to_owned(), peer.second * times));
         self.plain = plain.map(|plain| plain * times);
@@ -90,11 +92,11 @@ impl Row {
     }
 }
 
-/// Measurements of the planar scenes by peers.
+/// Costs of the peers in the planar scenes of the table.
 struct Peers {
     /// The scene on which five codes agree.
     agreed: Vec<peer::Cost>,
-    /// The eight barrels of a user on solid racks, standing and falling.
+    /// A user's stack of eight barrels on solid racks: a run in which it stands, and a run in which it falls.
     standing: Vec<peer::Cost>,
     falling: Vec<peer::Cost>,
 }
@@ -176,7 +178,7 @@ fn measured(what: &str, stage: &peer::Stage<'_>) -> Result<Vec<peer::Cost>, Fail
     Ok(costs)
 }
 
-/// Rows of planar studies.
+/// Returns the rows of planar studies.
 fn planar(cases: usize, plain: &plain::Costs, peers: &Peers) -> Result<Vec<Row>, Failure> {
     let scene = Scene::consensus(ANGLE)?;
     let lanes = lanes::of_widest(&scene, STEP);
@@ -243,7 +245,7 @@ fn middle(one: &[peer::Cost], other: &[peer::Cost]) -> Vec<peer::Cost> {
     all
 }
 
-/// Rows of single planar runs.
+/// Returns the rows of single planar runs.
 fn singles(plain: &plain::Costs, peers: &Peers) -> Result<Vec<Row>, Failure> {
     let eight = user::single("candia-8-barrels", &[])?;
     let mut rows =
@@ -281,7 +283,7 @@ fn singles(plain: &plain::Costs, peers: &Peers) -> Result<Vec<Row>, Failure> {
     Ok(rows)
 }
 
-/// Rows of three-dimensional stacks.
+/// Returns the rows of three-dimensional stacks.
 fn spatial() -> Result<Vec<Row>, Failure> {
     let scenario = space::standing()?;
     let ground = Ground::of(&scenario)?;
@@ -350,7 +352,8 @@ fn spatial() -> Result<Vec<Row>, Failure> {
     Ok(rows)
 }
 
-/// Rows of commands of the released program, by the clock.
+/// Returns the rows of commands of the released program, whose elapsed times are measured. The command `protect` is
+/// included if `protect` is `true`.
 fn commands(protect: bool) -> Result<Vec<Row>, Failure> {
     let program = program::path()?;
     let demo = program::demo(&program, 2)?;

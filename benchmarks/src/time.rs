@@ -25,8 +25,8 @@ pub(crate) fn of_commands() -> Option<f64> {
     of_fields(16)
 }
 
-/// Returns the sum (s) of two fields of the state of this process, the times in the program and in the
-/// system; fields are counted from 1.
+/// Returns the sum (s) of two adjacent fields of `/proc/self/stat`: the time spent in user mode, in the field with the
+/// number `first` (counted from 1), and the time spent in the kernel. `None` if the file cannot be read.
 fn of_fields(first: usize) -> Option<f64> {
     /// Ticks per second, the same on every Linux that reports this file.
     const TICKS: f64 = 100.0;

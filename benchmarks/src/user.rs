@@ -18,12 +18,13 @@ const CASES: usize = 32;
 /// Simulated time (s) of each case.
 const DURATION: f64 = 20.0;
 
-/// Range of the amplitude (m) of the sine motion of the paper in which the stack stands.
+/// Range of amplitudes (m) for which the stack stands under the sine motion of the paper.
 pub(crate) const STANDING: [f64; 2] = [0.01, 0.02];
-/// Range of the amplitude (m) in which half of the cases collapse.
+/// Range of amplitudes (m) for which half of the cases collapse under this motion.
 pub(crate) const HALF: [f64; 2] = [0.0165, 0.0265];
 
-/// Number of cases along each of two ranges of friction of the study in which every stack collapses.
+/// Number of values of each of the two friction coefficients in the study in which every stack collapses. The study has
+/// one case for each pair of values.
 const GRID: usize = 8;
 
 /// Cost of a study.
@@ -53,8 +54,8 @@ pub(crate) fn study(amplitudes: [f64; 2]) -> Result<Cost, Failure> {
     Ok(Cost { second: spent / simulated.get(), collapsed: fallen.get() as f64 / CASES as f64 })
 }
 
-/// Measures a study on one core in which all stacks collapse within about two seconds and are followed
-/// to the end of the motion of the paper: 64 cases that differ in two friction coefficients.
+/// Measures, on one core, a study of 64 cases that differ in two friction coefficients. All stacks collapse within
+/// about two seconds, and are simulated to the end of the motion of the paper.
 pub(crate) fn collapsing() -> Result<Cost, Failure> {
     let case = |at: usize| {
         let share = |at: usize| at as f64 / (GRID - 1) as f64;
@@ -91,7 +92,7 @@ pub(crate) struct OnAllCores {
     pub(crate) clock: f64,
 }
 
-/// Runs a study of standing cases that differ in their friction on all cores.
+/// Runs, on all cores, a study of cases in which the stack stands; the cases differ in friction and amplitude.
 pub(crate) fn on_all_cores(cases: usize) -> Result<OnAllCores, Failure> {
     let ensemble = Ensemble { cases: differing(cases, DURATION)?, ..Ensemble::default() };
     let (before, start) = (time::of_process(), Instant::now());
@@ -116,8 +117,8 @@ fn on_one_core(cases: &[Prepared]) -> Vec<barrelstack::ensemble::CaseResult> {
     simulate(cases, &mut audience).unwrap_or_default()
 }
 
-/// Returns cases of a given duration (s) that differ in two friction coefficients and in which the
-/// stack stands.
+/// Returns cases of a given duration (s) in which the stack stands. The cases differ in two friction coefficients and
+/// in the amplitude of the motion.
 fn differing(cases: usize, duration: f64) -> Result<Vec<Prepared>, Failure> {
     let case = |at: usize| {
         let share = |turn: f64| (at as f64 * turn).fract();
@@ -133,8 +134,8 @@ fn differing(cases: usize, duration: f64) -> Result<Vec<Prepared>, Failure> {
     (0..cases).map(case).collect()
 }
 
-/// Returns the settings of the motion of the paper with an amplitude (m), for the duration of the
-/// run.
+/// Returns the settings of the sine motion of the paper with the given amplitude (m). The motion has enough cycles to
+/// last for the whole run.
 fn shaking(amplitude: f64) -> Vec<String> {
     vec![format!("motion.sine.amplitude=\"{amplitude} m\""), "motion.sine.cycles=20".to_owned()]
 }

@@ -101,7 +101,8 @@ fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
     })
 }
 
-/// Runs a program of the workspace in the release profile, and returns `true` if the program succeeded.
+/// Runs a program of the workspace in the release profile. The exit status is a failure if the program fails or cargo
+/// cannot be started.
 ///
 /// `program` contains the arguments by which cargo selects the program; `words` are the arguments of the program.
 fn release(program: &[&str], words: &[&str]) -> ExitCode {

@@ -116,8 +116,8 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     if what == Some("heavy") { run_others(root) } else { Ok(()) }
 }
 
-/// Runs `OpenQuake` and Pelicun on exported files, in a second environment, because Pelicun needs
-/// an older pandas.
+/// Runs `OpenQuake` and Pelicun on exported files, in a second environment, because Pelicun needs an older version of
+/// pandas than the tests of the package.
 fn run_others(root: &Path) -> anyhow::Result<()> {
     let python = environment_at(&target(root).join("python-others"))?;
     for words in [&OTHERS[..], &["--no-deps", "openquake-engine"]] {

@@ -1,6 +1,7 @@
-//! Builds the pages that contain the engine, in English and in Spanish: compiles the engine to
-//! WebAssembly with the tools of this machine, and checks that it imports only functions that the
-//! page provides.
+//! Builds the pages that contain the engine, in English and in Spanish.
+//!
+//! The engine is compiled to WebAssembly with the tools of this machine. The build fails if the engine imports a
+//! function that the page does not provide.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -22,7 +23,7 @@ const DEBIAN: &str = "/usr/bin/rustc";
 /// A build of the engine and its page that is possible with the tools of this machine.
 pub(crate) struct Build {
     root: PathBuf,
-    /// Linker, if the standard library of the target must be built from source; `None` if it is installed.
+    /// Linker, if the standard library of the target must be built from source; `None` if that library is installed.
     linker: Option<PathBuf>,
 }
 

@@ -110,7 +110,7 @@ pub trait Comparable: Sized {
     fn side(self, name: String, plane: Option<View>) -> Side;
 }
 
-/// Makes all answers show the same variant: the most typical one over all answers (the medoid).
+/// Makes all results in `answers` show the same variant: the one that is most typical over all of them (the medoid).
 ///
 /// Only variants that run under the same horizontal component of the motion in all answers are eligible. If the nominal
 /// cases already differ in this component, all variants are eligible.

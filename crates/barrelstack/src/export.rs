@@ -97,7 +97,8 @@ impl Folder {
     /// Checks a folder before the computation starts; creates nothing yet.
     ///
     /// # Errors
-    /// When the folder is not empty and `overwrite` is not set, or when the path is not a folder.
+    /// When the folder is not empty and `overwrite` is not set, when the path is not a folder, or when the folder or
+    /// one of its files cannot be written.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ExportError> {
         if path.as_os_str().is_empty() {
             return Err(ExportError::write(path, "the name is empty"));
@@ -383,7 +384,8 @@ fn csv<R: Iterator<Item = Option<f64>>>(
     text
 }
 
-/// Returns `variants.csv`: in each plane, one row for the nominal case and one for each variant.
+/// Returns `variants.csv`: in each plane, one row for the nominal case and one for each variant, except interrupted
+/// cases.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
         "plane,variant,outcome,mode,first_body,first_loss (s),first_fall (s),barrels_fallen,barrels\n",

@@ -18,7 +18,7 @@ pub struct RigidBlock {
     pub frequency: f64,
 }
 
-/// Points up to this height above the lowest point, as a fraction of the total height, belong to the foot.
+/// Height of the foot of a block, as a fraction of the total height of the block.
 const FOOT: f64 = 1e-3;
 
 impl RigidBlock {

@@ -61,7 +61,7 @@ pub fn answer_document(answer: &Answer) -> Document {
     page(&decides.run, &decides.summary, variants)
 }
 
-/// Returns the player of the run that an answer shows, with a pane for each of its planes.
+/// Returns the player of the run that an answer shows, with a pane for each plane of the answer.
 pub fn stage(answer: &Answer) -> Block {
     let Answer { decides: Shown { run, summary, variants, .. }, other, .. } = answer;
     let scene = drawing::scene_among(run, variants.as_ref());

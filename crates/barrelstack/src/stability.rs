@@ -73,7 +73,7 @@ described! {
 /// Computes the static stability of the stack of a scenario, in the plane that the scenario states.
 ///
 /// # Errors
-/// As [`Scenario::run`]; also if the stack does not stand on a level floor.
+/// As for [`Scenario::run`]; also if the stack does not stand on a level floor.
 pub fn stability(scenario: &Scenario) -> Result<Stability, RunFailure> {
     let standing = stand(scenario, 1.0)?;
     let (tilt, first) = tilt_at_failure(&standing).unzip();
@@ -91,7 +91,7 @@ pub fn stability(scenario: &Scenario) -> Result<Stability, RunFailure> {
 /// sideways push of 1/10000 of its weight.
 ///
 /// # Errors
-/// As [`stability`].
+/// As for [`stability`].
 pub fn sway_period(scenario: &Scenario) -> Result<Option<f64>, RunFailure> {
     Ok(period_of(&stand(scenario, 1.0)?))
 }

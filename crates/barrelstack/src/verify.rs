@@ -1,4 +1,5 @@
-//! Reliability of a run, from repeats with a finer step, finer nodes and tiny perturbations.
+//! Reliability of a run, from repeats with a shorter time step, with more closely spaced nodes, and with tiny
+//! perturbations.
 //!
 //! Contact is chaotic: after enough impacts, two runs that differ only in the last digit diverge.
 //! Results before the divergence are predictions; later results are one possible course. A verdict
@@ -164,8 +165,8 @@ impl Repeatable for Run {
     }
 }
 
-/// Repeats a run: with half the step, with nodes at half the spacing, and four times with every
-/// barrel displaced by up to a nanometer.
+/// Repeats a run: with half the step (for an adaptive method, with a tenth of the tolerance), with nodes at half the
+/// spacing, and four times with the bodies displaced by up to a nanometer.
 ///
 /// `progress` receives the combined progress of all repeats and may cancel; canceled repeats are
 /// listed as skipped.
@@ -273,8 +274,8 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
     Ok(finer)
 }
 
-/// Returns the scenario with every barrel, or every body of a free scene, displaced by up to a
-/// nanometer.
+/// Returns the scenario with random horizontal displacements of every barrel of a stack, or of every movable body of a
+/// free scene. Each component is at most a nanometer.
 fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
     let mut changed = scenario.clone();
     let mut state = seed;

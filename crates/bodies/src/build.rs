@@ -107,8 +107,8 @@ fn pieces(solid: &Solid) -> Vec<Piece> {
         .collect()
 }
 
-/// Returns the surface of a solid and its mass distribution at unit density, which a half-space lacks; `None` for a
-/// compound or for invalid barrel dimensions.
+/// Returns the surface of a solid, and its mass distribution at unit density, which is `None` for a half-space. Returns
+/// `None` for a compound or for invalid barrel dimensions.
 fn simple(solid: &Solid) -> Option<(Surface, Option<Bulk>)> {
     const ROUND: f64 = std::f64::consts::PI;
     let ball = |radius: f64| 4.0 / 3.0 * ROUND * radius * radius * radius;
@@ -139,8 +139,8 @@ fn simple(solid: &Solid) -> Option<(Surface, Option<Bulk>)> {
     })
 }
 
-/// Returns the contact nodes of a surface; `None` for a half-space or a dish, which have no nodes: the nodes of other
-/// bodies touch them.
+/// Returns the contact nodes of a surface. Returns `None` for a half-space or a dish, which have no nodes of their own
+/// but can be touched by the nodes of other bodies.
 fn touching(placed: &Placed<Spatial>) -> Option<Nodes<Spatial>> {
     let hull = match &placed.surface {
         Surface::HalfSpace | Surface::Dish(_) => return None,

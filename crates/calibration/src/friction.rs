@@ -25,12 +25,12 @@ const COLUMNS: [&str; 6] = [
 
 /// Estimates static and kinetic friction from a table of repeated tests, one per row.
 ///
-/// Pull tests have the columns `normal force`, `breakaway force` (the largest pull before the body moves)
-/// and, for the kinetic coefficient, `sliding force`; the coefficients are the ratios of these two forces to
-/// the normal force. Tilt tests have the column `angle`, the angle of first slip, whose tangent is the static
-/// coefficient. For the kinetic coefficient they also have `sliding distance` and `sliding time`, measured
-/// from rest at that angle: `μ = tan α − 2 s / (t² g cos α)`. The interval is that of the mean over the rows,
-/// by Student's t distribution.
+/// Pull tests have the columns `normal force`, `breakaway force` (the largest pull before the body moves) and, for the
+/// kinetic coefficient, `sliding force`; the coefficients are the ratios of these two forces to the normal force. Tilt
+/// tests have the column `angle`, the angle of first slip, whose tangent is the static coefficient. For the kinetic
+/// coefficient they also have `sliding distance` and `sliding time`, measured from rest at that angle:
+/// `μ = tan α − 2 s / (t² g cos α)`. Each coefficient is the mean over the rows; its interval follows from Student's t
+/// distribution.
 ///
 /// # Errors
 /// If the table lacks its columns, has fewer than two rows, or contains an impossible value.

@@ -55,7 +55,8 @@ pub struct Start {
 
 /// Minimizes the sum of squared residuals.
 ///
-/// Returns `None` if the model has no result at the start or at a point of the finite differences around it.
+/// Returns `None` if the model has no result at the start or at a point of the finite differences of any step, or if
+/// the linear equations of a step cannot be solved.
 pub fn fit(start: Start, evaluate: &Evaluate<'_>) -> Option<Fit> {
     let Start { mut parameters, slopes, width, share } = start;
     let mut residuals = evaluate(std::slice::from_ref(&parameters)).pop()??;

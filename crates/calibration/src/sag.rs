@@ -18,12 +18,13 @@ const COLUMNS: [&str; 3] = ["load", "sag", "angle"];
 ///
 /// The column `load` holds the mass that was placed on the body, and `sag` the deflection under that mass.
 /// The optional column `angle` holds the angle between the contact normal and the vertical, for example in a
-/// cradle. `seats` is the number of seats that share the load, so `sag = load g / (seats k cos² angle)`. The
-/// interval follows from that of the slope of sag against load, for a line through the origin, by Student's t
-/// distribution.
+/// cradle. `seats` is the number of seats that share the load, so `sag = load g / (seats k cos² angle)`.
+///
+/// A line through the origin is fitted to sag against load. The 95 % interval of its slope follows from Student's t
+/// distribution, and gives the interval of the stiffness.
 ///
 /// # Errors
-/// If the table lacks a column, has fewer than two rows, or the sag does not grow with the load.
+/// If the table lacks a column or has fewer than two rows, or if the sag does not grow with the load.
 pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, CalibrateError> {
     let load = table.required("load", Dimension::MASS)?;
     let sag = table.required("sag", Dimension::LENGTH)?;

@@ -36,7 +36,8 @@ const COVERS: &str = "The 95 % intervals cover the uncertainty of the statements
 /// Number of parameter sets that are weighted by the likelihood of the statements.
 const DRAWS: usize = 20_000;
 
-/// Mean likelihood of a statement over the prior below which a warning is given; 1 is the highest possible likelihood.
+/// Threshold of the mean likelihood of a statement over the prior. A smaller mean gives a warning; the highest possible
+/// likelihood is 1.
 const UNLIKELY: f64 = 0.05;
 
 /// Scenario that represents all stacks with a given number of levels. Its motion is that of the earthquake.

@@ -21,7 +21,7 @@ const CLEARLY: f64 = 10.0;
 /// [`Calibration::scenario`].
 ///
 /// # Errors
-/// If the table lacks a column, has fewer than three rows, or its force does not grow with penetration.
+/// If the table lacks a column or has fewer than three rows, or if the force does not grow with penetration.
 pub fn stiffness(
     table: &Table,
     nodes: u32,
@@ -127,9 +127,9 @@ fn picture(penetration: &[f64], force: &[f64], slope: f64, offset: f64) -> Figur
 /// criterion (Akaike 1974) of this law is lower than the criterion of the straight line. Both laws have two
 /// parameters.
 ///
-/// For a given δ₀ the best `k` is a ratio of sums, so only δ₀ is searched. The first grid extends to either
-/// side of the first reading by the span of the readings; each further grid is finer and centered on the best
-/// value so far.
+/// For a given δ₀ the best `k` is a ratio of sums, so only δ₀ is searched. The first grid extends to either side of the
+/// smallest reading by nearly the span of the readings; each further grid is finer and centered on the best value so
+/// far.
 fn hertz(penetration: &[f64], force: &[f64], line_squares: f64) -> Option<(f64, f64)> {
     let low = penetration.iter().copied().fold(f64::INFINITY, f64::min);
     let high = penetration.iter().copied().fold(f64::NEG_INFINITY, f64::max);

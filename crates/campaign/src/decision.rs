@@ -124,7 +124,8 @@ pub enum DecisionError {
         /// Text of the cell.
         found: String,
     },
-    /// The hazard curve is unsuitable, for example because it is for another intensity measure than the study.
+    /// The hazard curve is unsuitable, for example because its intensity measure differs from the intensity measure of
+    /// the study.
     #[error(transparent)]
     Hazard(#[from] TableError),
     /// The folder of the study cannot be read.

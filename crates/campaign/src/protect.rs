@@ -111,8 +111,8 @@ pub struct Ranked {
     /// Reduction of the number of fallen barrels compared with the unprotected stack, under the same motions.
     /// `None` for the unprotected stack, or if fewer than two motions are common to both stacks.
     pub saved: Option<Estimate>,
-    /// The reduction in `saved`, with an interval that holds for all tried protections simultaneously, since
-    /// the best of many protections is reported; `None` if `saved` is `None`.
+    /// The same reduction as in `saved`, but with an interval that holds for all tried protections simultaneously,
+    /// because the best of many protections is reported. `None` if `saved` is `None`.
     pub saved_together: Option<Estimate>,
     /// Direction of shaking in which more barrels fall.
     pub direction: Direction,
@@ -358,7 +358,8 @@ pub fn protect(
     Ok(ranking)
 }
 
-/// Returns the indices of the candidates that continue in the next round, among the candidates `open`.
+/// Selects the candidates that continue in the next round from the candidates with the indices `open`, and returns
+/// their indices.
 fn contenders(candidates: &[Candidate], open: &[usize], weights: &[f64]) -> Vec<usize> {
     let judged = |at: &usize| {
         let candidate = &candidates[*at];

@@ -1,7 +1,8 @@
 //! Unmeasured parameters of a stack (friction, stiffness, damping) as factors of a study.
 //!
-//! The medians and the scatter of these factors are those of `[unknowns]`. Variants of a run, studies of
-//! stack heights, rankings of protections and scores all use the same factors for a stack.
+//! The medians of these factors are the constants of the contact laws in the scenario, and their scatter follows from
+//! `[unknowns]`. Variants of a run, studies of stack heights, rankings of protections and scores all use the same
+//! factors for a stack.
 
 use std::fmt::Write as _;
 

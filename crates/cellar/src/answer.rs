@@ -131,12 +131,12 @@ pub(crate) fn shared(
 }
 
 impl Answer {
-    /// `true` if any part of the work was interrupted.
+    /// Returns `true` if any part of the work was interrupted.
     pub fn is_stopped(&self) -> bool {
         self.shown.interrupted || self.summary.unfinished.is_some()
     }
 
-    /// `true` if the computation of the run that is shown failed.
+    /// Returns `true` if the computation of the shown run failed.
     pub fn is_invalid(&self) -> bool {
         !self.case.valid
     }

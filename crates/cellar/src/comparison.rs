@@ -428,8 +428,8 @@ fn pair(first: &Layout, second: &Layout, others: usize) -> LayoutPair {
     }
 }
 
-/// Returns the numbers of the variants that are left out of the comparison of two layouts, because they are not counted
-/// in the statistics of at least one layout. The room as stated is treated as a variant only in a layout without other
+/// Returns the numbers of the variants that are left out of the comparison of two layouts, because one or both of the
+/// layouts do not count them in their statistics. The room as stated is treated as a variant only in a layout without other
 /// variants.
 fn left_out(layouts: [&Layout; 2], losses: [&BTreeMap<u32, Loss>; 2]) -> Vec<u32> {
     let of = |layout: &Layout| -> BTreeSet<u32> {

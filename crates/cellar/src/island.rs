@@ -99,8 +99,8 @@ pub(crate) struct Live {
     /// For every body, an upper bound (m) on the largest displacement of any of its points, relative to the ground,
     /// since the start of the window.
     pub(crate) travels: Vec<f64>,
-    /// The body that stopped the last advance, since it could have exceeded the distance that [`Island::tubes`] allows
-    /// in the next step; `None` if the advance was not stopped by a body.
+    /// The body that stopped the last advance: in the next step, it could have exceeded the distance that
+    /// [`Island::tubes`] allows. `None` if no body stopped the advance.
     pub(crate) stopped_by: Option<BodyId>,
     /// Time (s) before which the run of the island does not end, because a barrel rolls toward another stack.
     pub(crate) not_before: f64,

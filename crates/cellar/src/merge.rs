@@ -14,8 +14,8 @@ use crate::world::World;
 /// Islands and obstacles that become one island.
 struct Plan<'a> {
     world: &'a World<'a>,
-    /// For every stack, in the order of their names: index of its source island, and index of the stack among the
-    /// members of that island.
+    /// For every stack, in the order of the names of the stacks: index of its source island, and index of the stack
+    /// among the members of that island.
     members: Vec<(usize, usize)>,
     /// For each member, the index of its stack in the room.
     stacks: Vec<usize>,
@@ -48,8 +48,8 @@ impl Plan<'_> {
         stacks.chain(obstacles).collect()
     }
 
-    /// Returns the states to carry over from the islands, the members of the merged island, and the owners of its
-    /// bodies.
+    /// Returns three lists: the states to copy from the islands to the merged island, the members of the merged island,
+    /// and the owners of its bodies.
     fn places(&self, islands: &[Island]) -> (Vec<Carry>, Vec<Member>, Vec<Owner>) {
         let (mut carries, mut members, mut owners) = (Vec::new(), Vec::new(), Vec::new());
         let mut elements = 0;

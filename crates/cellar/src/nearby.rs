@@ -22,14 +22,15 @@ const STALE: f64 = 0.1;
 /// Distance (m) that a body may move in a window if no other body is near; it corresponds to a speed of 45 m/s.
 pub(crate) const FREE: f64 = 0.09;
 
-/// Gap (m) between bodies of two islands: if a gap might become smaller than this in a window, the islands are merged.
-/// The merge thus comes before an impact, and does not affect the next step.
+/// Gap (m) below which islands are merged: two islands become one if a gap between their bodies might become smaller
+/// than this in a window. They are thus merged before their bodies touch.
 const SLACK: f64 = 2e-3;
 
 /// Allowance (m) that is added to the predicted travel of a body in a window, so that even a body at rest may move.
 const LEAST: f64 = 1e-3;
 
-/// Gap (m) up to which gaps are measured exactly; for larger gaps, a lower bound suffices.
+/// Gap (m) up to which gaps are measured exactly. A lower bound suffices for a gap that exceeds both this value and
+/// twice the predicted approach of the two bodies.
 const EXACT: f64 = 0.1;
 
 /// A pair of bodies that are near each other: two bodies of different stacks, or a body and an obstacle.

@@ -239,7 +239,8 @@ impl Plan {
         self.drawn(cellar, &kind)
     }
 
-    /// Returns the plan as a picture. For the index of a stack, `kind` returns how the stack is drawn.
+    /// Returns the plan as a picture. `kind` maps the index of a stack to the kind of region as which the stack is
+    /// drawn.
     pub(crate) fn drawn(&self, cellar: &Cellar, kind: &dyn Fn(usize) -> RegionKind) -> FloorPlan {
         let RoomSpec { length, width, .. } = cellar.room;
         let mut regions: Vec<Region> = cellar
@@ -594,8 +595,8 @@ impl Obstacles<'_> {
         }
     }
 
-    /// `true` if a path as wide as a person leads through an aisle along its longer side. The aisle is the rectangle
-    /// with the opposite corners `from` and `to`.
+    /// Returns `true` if a path as wide as a person leads through an aisle along its longer side. The aisle is the
+    /// rectangle with the opposite corners `from` and `to`.
     pub(crate) fn is_passable(&self, from: Point, to: Point) -> bool {
         let axis = usize::from(to[1] - from[1] > to[0] - from[0]);
         let half = 0.5 * PASSAGE;

@@ -44,7 +44,7 @@ pub struct Shift {
 }
 
 impl Placed {
-    /// Creates a stack whose axes are those of the room, at a position (m).
+    /// Creates a stack at a position (m) in the room, with its axes parallel to the axes of the room.
     pub fn new(name: &str, scenario: Scenario, at: [f64; 2]) -> Self {
         let (azimuth, start, shifts) = (0.0, None, Vec::new());
         Self { name: name.to_owned(), scenario, at, azimuth, start, carried_on: false, shifts }

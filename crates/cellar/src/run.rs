@@ -20,7 +20,8 @@ use crate::result::RoomRun;
 use crate::room::{Room, RoomFailure, Settings};
 use crate::world::{PRESSED, World};
 
-/// Length (s) of a window: longer windows merge islands at larger gaps, shorter ones cost more.
+/// Length (s) of a time window. With longer windows, islands are merged at larger gaps; shorter windows take more
+/// computing time.
 const WINDOW: f64 = 2e-3;
 
 /// Shortest time (s) for which an island at rest is advanced further if one of its barrels still rolls toward another

@@ -270,8 +270,9 @@ impl Prepared {
         Ok(check_kept((2.0 * frames, bodies, 8), (0.0, 0))?)
     }
 
-    /// Converts an overlap of bodies to an error that points to the entry of the file that states where one of the two
-    /// stacks starts. Other failures are returned unchanged.
+    /// Converts an overlap of bodies to an error that points to an entry of the file: the entry that states the initial
+    /// pose of one of the two stacks. Other failures are returned unchanged, and so is an overlap for which there is no
+    /// such entry.
     fn placed(&self, failure: RoomFailure) -> CellarFailure {
         let RoomFailure::Overlap { first, second, depth } = &failure else {
             return failure.into();
@@ -420,8 +421,9 @@ impl Prepared {
         }
     }
 
-    /// Returns the time (s) from which an aisle stays blocked until the end; this is the start of the shaking if the
-    /// stacks and columns already block the aisle before it. `None` if the aisle is passable at the end.
+    /// Returns the time (s) from which an aisle stays blocked until the end; `None` if the aisle is passable at the
+    /// end. If stacks and columns already block the aisle before the shaking, the returned time is the start of the
+    /// shaking, `onset`.
     fn blocked_at(
         &self,
         from: [f64; 2],
@@ -616,7 +618,8 @@ pub struct Case {
     /// Warnings, one sentence each, preceded by the name of the stack that the warning concerns; `None` instead of the
     /// name if a warning concerns the whole room.
     pub warnings: Vec<(Option<String>, String)>,
-    /// For a sequence, the results of its shocks, each with its own clock; empty for a single shock.
+    /// For a sequence, the results of its shocks, each in the time of its own run, which begins at zero; empty for a
+    /// single shock.
     pub shocks: Vec<Self>,
 }
 
@@ -647,7 +650,7 @@ pub struct StackCase {
 }
 
 impl StackCase {
-    /// `true` if the stack falls by itself.
+    /// Returns `true` if the stack falls by itself.
     pub fn by_itself(&self) -> bool {
         self.fell_at.is_some() && !self.knocked
     }

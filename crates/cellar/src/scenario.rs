@@ -373,7 +373,7 @@ impl Cellar {
         is_cellar(path, bytes, 8)
     }
 
-    /// Returns the same cellar with values changed by further overrides, which replace earlier ones.
+    /// Returns a copy of the cellar to which further overrides are applied, after all earlier overrides.
     ///
     /// # Errors
     /// As for [`Cellar::load`].
@@ -749,7 +749,7 @@ fn check(host: &Host, stated: &Scenario) -> Result<(), ScenarioError> {
     Ok(())
 }
 
-/// Reads a list of tables; more than [`MOST_ITEMS`] are an error.
+/// Reads a list of at most [`MOST_ITEMS`] tables; returns an error if there are more.
 fn all<T: barrelstack_input::declared::Declared>(
     reader: &Reader<'_>,
     name: &'static str,

@@ -21,7 +21,7 @@ pub fn after(mut room: Room, run: &RoomRun) -> Room {
     room
 }
 
-/// `true` if another shock can follow a run: it was not stopped, and its computation did not fail.
+/// `true` if another shock can follow a run, that is, if the run was not stopped and its computation did not fail.
 pub(crate) fn can_continue(run: &RoomRun) -> bool {
     let valid = |stack: &StackEnd| !matches!(stack.outcome, Outcome::Invalid { .. });
     !run.interrupted && run.stacks.iter().all(valid)
@@ -93,8 +93,8 @@ fn add(all: &mut RoomRun, next: &RoomRun) {
     }
 }
 
-/// Adds the result of a body in a further shock, which starts at the time `from` (s), to its result so far; `stood` is
-/// `true` if its stack stood before the shock.
+/// Adds the result of a body in a further shock to the result of the body so far. `from` is the time (s) at which the
+/// shock starts; `stood` is `true` if the stack of the body had not lost a seat before the shock.
 fn add_body(all: &mut BodyEnd, next: &BodyEnd, from: f64, stood: bool) {
     let (one, two) = (all.fate, next.fate);
     let left = two.left_seat.map(|(time, loss, heading)| (from + time, loss, heading));

@@ -325,7 +325,8 @@ pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
     ))
 }
 
-/// Returns a sentence that states `text` about the run that is shown, and names this run if there are several.
+/// Returns a sentence that states `text` about the run that is shown. If several runs count, the sentence also says
+/// which of them is shown.
 fn sentence(summary: &CellarSummary, text: &str) -> String {
     match (summary.counted, summary.shown.typical) {
         (2.., true) => format!("In the most typical of {} runs, {text}", summary.counted),

@@ -115,7 +115,7 @@ pub struct Field {
 }
 
 /// Adds the schema of an object to `objects` under its name, unless this name is already present. Returns a schema that
-/// refers to it (`$ref`).
+/// refers to the schema of the object (`$ref`).
 pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]) -> Value {
     let reference = json!({ "$ref": format!("#/$defs/{name}") });
     if objects.contains_key(name) {

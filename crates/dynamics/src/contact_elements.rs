@@ -23,8 +23,8 @@ const LOOKAHEAD_SLACK: f64 = 1e-3;
 /// Minimum allowance (m): every body may move at least this far before the list is rebuilt.
 const LEAST_ALLOWANCE: f64 = 0.015;
 
-/// Time (s) for which the list should remain valid if bodies keep their speeds, so that falling bodies do not require a
-/// new list at every other step.
+/// Time (s) for which the list should remain valid if bodies keep their speeds, so that the list need not be rebuilt
+/// every few steps while bodies fall.
 const HORIZON: f64 = 0.012;
 
 /// Maximum allowance (m): no body may move farther before the list is rebuilt. A larger allowance would make the list
@@ -248,7 +248,8 @@ impl<S: Space> ContactElements<S> {
     /// Enlarges the bounding ball of every body by its allowance, and returns the contact pairs of all bodies whose
     /// enlarged balls overlap, in the order of the model.
     ///
-    /// The bodies are sorted and swept along the first axis, so that the cost for a row of bodies is not quadratic.
+    /// The bodies are sorted and swept along the first axis, so that the cost for a row of bodies does not grow with
+    /// the square of their number.
     fn pairs_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
         if self.exhaustive {
             return model.pairs.numbers().collect();

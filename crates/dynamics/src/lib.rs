@@ -21,8 +21,9 @@
 //!
 //! # Signs
 //!
-//! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians. In three dimensions,
-//!   `y` points away from the viewer and rotations are right-handed, so an angle in the plane is a rotation about `-y`.
+//! - `x` points right and `z` points up; angles grow from `x` toward `z`. All units are SI units; angles are in
+//!   radians. In three dimensions, `y` points away from the viewer and rotations are right-handed, so an angle in the
+//!   plane is a rotation about `-y`.
 //! - A gap has a negative distance where the bodies penetrate each other; the penetration is never negative.
 //! - The penetration rate is positive while the bodies approach each other.
 //! - Normals point out of the target.

@@ -76,8 +76,8 @@ pub struct Substepping<R> {
 /// Additional substepping rules for fast contacts of [`Nodes::Whole`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fast<R> {
-    /// Displacement (m) along the contact normal during a whole step, above which the step is divided. Otherwise the
-    /// spring and the damper of the contact would engage or release too abruptly.
+    /// Displacement (m) along the contact normal during a whole step, above which the step is divided. During an
+    /// undivided step, the spring and the damper of such a contact would engage or release too abruptly.
     pub whole_step_way: R,
     /// Approach speed (m/s) above which an impact counts as hard. As soon as a hard impact is predicted, the substeps
     /// are half as long, until no substeps are needed anymore.

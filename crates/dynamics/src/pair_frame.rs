@@ -25,7 +25,7 @@ pub(crate) struct PairFrame<S: Space> {
 /// Filter that selects the contacts of a pair by their position relative to a face, as [`Counts`] requires.
 #[derive(Clone, Copy)]
 pub(crate) struct AtFace<S: Space> {
-    /// Lanes in which the other body's center of mass lies in front of the face.
+    /// Lanes in which the center of mass of the body without this face lies in front of the face.
     before: <S::Real as Real>::Mask,
     /// Unit normal of the face, in the frame of the target's surface. Like a contact normal, it points out of the
     /// target: it is the outward normal of a face of the target, or the inward normal of a face of the contactor.

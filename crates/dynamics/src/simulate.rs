@@ -262,7 +262,7 @@ impl<S: Space<Real = f64>> Stepper<S> {
     /// Takes one step. If the step would end after the time `until` (s), it is shortened to end at that time.
     ///
     /// # Errors
-    /// As [`Stepper::step`].
+    /// The same as for [`Stepper::step`].
     pub fn step_until(
         &mut self,
         model: &Model<S>,

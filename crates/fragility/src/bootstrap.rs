@@ -55,8 +55,8 @@ impl Replicates {
     }
 }
 
-/// Returns `Φ⁻¹(p)`, where `p` is the fraction of the sorted values that are less than `value`. Values equal to `value`
-/// count as one half.
+/// Returns `Φ⁻¹(p)`, where `p` is the fraction of the sorted values that are less than `value`. Each value equal to
+/// `value` counts as one half.
 fn bias(ascending: &[f64], value: f64) -> f64 {
     let below = ascending.partition_point(|x| *x < value);
     let same = ascending[below..].partition_point(|x| *x <= value);

@@ -50,8 +50,8 @@ pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
     goodness_in_bins(&sorted.iter().map(|stripe| vec![*stripe]).collect::<Vec<_>>(), found)
 }
 
-/// Computes [`goodness`] for bins in which cases have different intensities. Each bin is a list of stripes, in
-/// ascending order of intensity.
+/// Computes [`goodness`] for bins in which cases have different intensities. Each bin is a list of stripes. The bins
+/// must be in ascending order of intensity.
 ///
 /// The expected number of failures in a bin is the sum of the failure probabilities of its cases, each at its own
 /// intensity, because the curve is not linear within the bin.

@@ -192,7 +192,7 @@ impl Hazard {
 
     /// Returns the expected annual consequence, such as barrels lost per year.
     ///
-    /// `consequence` returns the expected consequence at an intensity, which must not exceed `worst`.
+    /// `consequence` returns the expected consequence at an intensity. No consequence may exceed `worst`.
     pub fn expected(&self, worst: f64, consequence: impl Fn(f64) -> f64) -> Rate {
         let [(first, _), (last, beyond)] = self.ends();
         let within = self.integral(first, last, &consequence);

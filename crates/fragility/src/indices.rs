@@ -1,5 +1,5 @@
-//! Variance-based sensitivity indices: the influence of each input alone and including its interactions with
-//! other inputs.
+//! Variance-based sensitivity indices: the influence of each input by itself, and its influence including interactions
+//! with other inputs.
 
 use crate::math::{exp, student_quantile};
 use crate::proportion::{Interval, unobserved};

@@ -147,8 +147,7 @@ impl<const N: usize> Likelihood<N> {
         sum
     }
 
-    /// Maximizes the likelihood from a starting point at which it is finite; returns `None` if there is no
-    /// maximum.
+    /// Maximizes the likelihood from a starting point at which it is finite; returns `None` if no maximum is found.
     pub(crate) fn top(&self, start: [f64; N]) -> Option<Top<N>> {
         let mut parameters = start;
         let mut shape = self.shape(&parameters);

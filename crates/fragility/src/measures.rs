@@ -73,8 +73,8 @@ fn residuals(x: &[f64], y: &[f64]) -> Option<Vec<f64>> {
     (scale > 1e-9).then(|| rest.iter().map(|r| r / scale).collect())
 }
 
-/// Returns, among all pairs of a failed and a standing case, the fraction in which the failed case has the
-/// higher intensity.
+/// Returns the fraction of all pairs of a failed and a standing case in which the failed case has the higher intensity.
+/// Pairs with equal intensities count half.
 fn concordance(cases: &[(f64, bool)]) -> f64 {
     let mut sorted = cases.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));

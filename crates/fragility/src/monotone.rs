@@ -31,8 +31,8 @@ pub struct Monotony {
     /// p-value: the probability of a `deviance` at least as large as this one if failure never becomes less
     /// likely with intensity.
     pub p: f64,
-    /// All decreases of the fractions, whether significant or not. There is one for each group of several neighboring
-    /// stripes that have been pooled because the fraction decreases, and so have the same isotonic probability.
+    /// All decreases of the fractions, whether significant or not. Neighboring stripes between which the fraction
+    /// decreases are pooled, and have the same isotonic probability. Each pool of several stripes gives one decrease.
     pub falls: Vec<Fall>,
 }
 

@@ -132,10 +132,9 @@ impl LeaveOneOut {
 /// other.
 ///
 /// Each group is `(sum, cases)`. The interval is Wilson's, with two changes. A quantile of Student's t distribution
-/// replaces the normal quantile, and an effective number of independent cases replaces the number of cases. The
-/// effective number follows from the scatter of the groups: the scatter determines the variance of the mean, and the
-/// mean of that many independent cases has the same variance. If the groups do not scatter at all, the number of groups
-/// is used.
+/// replaces the normal quantile, and an effective number of independent cases replaces the number of cases. The scatter
+/// of the groups determines the variance of the mean; the effective number is the number of independent cases whose
+/// mean would have the same variance. If the groups do not scatter at all, the number of groups is used instead.
 ///
 /// A few groups may agree by chance, and groups with other means may be missing from the sample ([`unobserved`]). The
 /// interval is therefore extended to the means that would result if the missing groups contained only zeros, or only

@@ -23,8 +23,9 @@ const FREEDOM: f64 = 3.0;
 
 /// Scale of the prior distribution of the coefficients `g` (the two halves of the runs) and `aⱼ` (the constants).
 ///
-/// A typical constant has a coefficient as large as the scale. With a scale of 0.6, the share then changes from 16 to
-/// 84 % when this constant changes from −1.6 to +1.6 of its standard deviations.
+/// A typical constant has a coefficient as large as the scale. With a scale of 0.6, the share then increases from 17 to
+/// 83 % when this constant increases from 1.6 standard deviations below its median to 1.6 above it, while all other
+/// terms are 0.
 const PRIOR: f64 = 0.6;
 
 /// Scale of the prior distribution of `cᵢⱼ`, the coefficients of the squares and products of the constants.

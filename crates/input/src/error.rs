@@ -227,7 +227,7 @@ pub enum Problem {
     },
 }
 
-/// Returns the advice to add a field, of which `example` is an example.
+/// Returns the advice to add a field; `example` shows the field with a valid value.
 fn addition(example: &str) -> String {
     if example.starts_with('`') {
         format!("add it, for example {example}")

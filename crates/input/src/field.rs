@@ -206,8 +206,11 @@ impl Field {
     }
 }
 
-/// Returns a quantity of a dimension as a user would write it. A length with a high limit, such as that of a room, has
-/// a longer example than that of a barrel: a hundredth of the limit. A time that may be long is not as short as a step.
+/// Returns a quantity of a dimension as a user would write it.
+///
+/// If the range of a positive length has an upper limit of at least 100 m, the result is a hundredth of this limit. If
+/// the range of a time has an upper limit of at least 100 s, the result is 1 s. The limit [`VAST`] does not count. In
+/// all other cases, the result is that of [`Dimension::example`].
 pub(crate) fn example_in(dimension: Dimension, range: Range) -> String {
     let large = (100.0..VAST).contains(&range.greatest);
     // A lower limit above zero belongs to lengths of bodies.

@@ -1,4 +1,4 @@
-//! Names that a user chooses from a list: the valid name that a mistyped one is most similar to.
+//! Advice on mistyped names: finds the valid name that is most similar to a mistyped name.
 
 /// Names that users of other programs write out of habit, each with a corresponding name in this program.
 const HABITS: &[(&str, &str)] = &[
@@ -64,8 +64,8 @@ pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
         })
 }
 
-/// Returns `true` if two names are different numbers after the same letter, such as the bodies `B9.1` and `B1.1`. The
-/// one is then no slip of the pen for the other.
+/// Returns `true` if two names are different numbers after the same letter, such as the bodies `B9.1` and `B1.1`. One of
+/// them is then unlikely to be a misspelling of the other.
 fn differ_in_digits(one: &str, other: &str) -> bool {
     let plain = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "");
     let letters = one.chars().filter(char::is_ascii_alphabetic).count();

@@ -133,7 +133,7 @@ pub struct SourceFile {
 pub struct Sources {
     /// The files; an index into this list identifies a file.
     pub files: Vec<SourceFile>,
-    /// The overrides, in the form `path=value`. [`Sources::adopt`] adds nested tables and lists as their path only.
+    /// The overrides, in the form `path=value`. For nested tables and lists, [`Sources::adopt`] adds only the path.
     pub overrides: Vec<String>,
 }
 
@@ -156,9 +156,9 @@ impl Sources {
         }
     }
 
-    /// Assigns an origin to every value of a table built by a program rather than parsed. Each value is recorded as an
-    /// override, `path=value`; a nested table or list is recorded as its path only. In the paths, items of lists are
-    /// numbered from 1.
+    /// Assigns an origin to every value of a table that a program has built and not parsed from text. Each value is
+    /// recorded as an override, `path=value`; for a nested table or list, only the path is recorded. In the paths,
+    /// items of lists are numbered from 1.
     pub fn adopt(&mut self, table: &mut Table) {
         self.adopt_below(table, "");
     }

@@ -102,9 +102,8 @@ impl Record {
         }
     }
 
-    /// Compares the headers of two files. Returns the first difference in site, format, event or stage
-    /// because of which they cannot be components of one record; `None` if there is no such
-    /// difference.
+    /// Compares the headers of two files. Returns a description of the first difference in site, format, event or stage
+    /// that prevents the files from being components of one record; `None` if there is no such difference.
     pub fn unlike(&self, other: &Self) -> Option<String> {
         let one = self;
         let files = format!("{} and {}", one.file, other.file);

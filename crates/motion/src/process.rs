@@ -12,8 +12,8 @@ use crate::sampled::integrate;
 pub enum MeanRemoval {
     /// No mean is removed.
     Keep,
-    /// Mean of the quiet part before the first arrival, at most 5 s; mean of the whole record if
-    /// the shaking begins within the first half second.
+    /// Mean of the quiet part before the first arrival, of which at most 5 s are used. If the shaking begins within the
+    /// first second, the mean of the whole record is removed instead.
     PreEvent,
     /// Mean of the whole record.
     Whole,
@@ -42,7 +42,7 @@ pub enum Pads {
 pub struct Processing {
     /// Mean to be removed.
     pub mean: MeanRemoval,
-    /// Subtracts the least-squares line; only for records without permanent tilt.
+    /// If `true`, subtracts the least-squares line. This is suitable only for records without permanent tilt.
     pub detrend: bool,
     /// Length of the cosine taper at each end, as a fraction of the record; 0 for no taper.
     pub taper: f64,

@@ -16,7 +16,7 @@ use crate::utc::Utc;
 /// Processing of a record before it was published.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
-    /// Uncorrected; the integrated velocity and displacement drift.
+    /// Uncorrected. The velocity and the displacement drift when they are integrated from the acceleration.
     Raw,
     /// Filtered and baseline-corrected, by the publisher or later.
     Corrected,
@@ -328,7 +328,8 @@ impl Record {
         Ok(record)
     }
 
-    /// Sets the start and the site of all channels; the station is filled in at the end of reading.
+    /// Sets the start and the site of all channels. If `site` states no station, the station of the record is filled in
+    /// when reading ends.
     pub(crate) fn place(&mut self, start: Option<Utc>, site: &Site) {
         for channel in &mut self.channels {
             channel.start = start;

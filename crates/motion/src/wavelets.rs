@@ -350,8 +350,8 @@ fn demand(
     peak
 }
 
-/// Returns, for every oscillator, the local extrema of the response to the motion `a` above the fraction `share` of
-/// the target, and in any case the largest extremum.
+/// Returns, for every oscillator, the local extrema of the response to the motion `a` that exceed the fraction `share`
+/// of the target in magnitude. The largest extremum is always included.
 fn extrema(
     work: &Work<'_>,
     a: &[f64],

@@ -33,8 +33,8 @@ pub struct Animation {
 impl Animation {
     /// Renders a film with at most `largest` pixels on its longer side; returns `None` if the film has no frames.
     ///
-    /// Each frame is shown for a whole number of hundredths of a second, as the format requires. Few viewers show more than
-    /// 50 frames per second.
+    /// Each frame is shown for a whole number of hundredths of a second, as the GIF format requires. Few viewers show
+    /// more than 50 frames per second.
     pub fn of(film: &Film, largest: u32) -> Option<Self> {
         let [width, height] = film.size();
         let scale = f64::from(largest.min(u32::from(u16::MAX))) / width.max(height);

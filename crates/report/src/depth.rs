@@ -11,8 +11,8 @@ use crate::{
 /// Quantum (m) to which the points of application of forces are rounded: about 2 mm, which is too little to be visible.
 const POINT_QUANTUM: f64 = 1.0 / 512.0;
 
-/// Forces are rounded to multiples of a quantum, which is this number times the power of two that [`pack::quantum_for`]
-/// returns (at most 2⁻¹⁶ of the largest component).
+/// Factor by which the quantum to which forces are rounded exceeds the power of two that [`pack::quantum_for`] returns.
+/// This power of two is at most 2⁻¹⁶ of the largest component of the forces.
 const FORCE_STEPS: f64 = 64.0;
 
 /// A point or vector `[x, y, z]` (m): x across the barrels, y along them, z up; right-handed.

@@ -292,9 +292,9 @@ impl Translator {
         found
     }
 
-    /// Translates `flipped`, a text with the case of its first letter inverted. Returns `None` if the text is not an
-    /// entry, and every matching template that begins with literal text leaves more letters untranslated than the
-    /// template contains.
+    /// Translates `flipped`, a text with the case of its first letter inverted. The text must be an entry, or match a
+    /// template that begins with literal text and leaves no more letters untranslated than the template contains;
+    /// otherwise, returns `None`.
     ///
     /// Does not use [`Self::derived`], which would invert the case of the first letter a second time.
     fn other_case(&self, flipped: &str, depth: usize) -> Option<Translated> {
@@ -348,7 +348,7 @@ fn flipped(text: &str) -> Option<String> {
     Some(other + rest.as_str())
 }
 
-/// Changes the case of the first letter of a translation to that of the original.
+/// Gives the first letter of a translation the same case as the first letter of the original.
 fn flipped_back(translation: &str, original: &str) -> String {
     let upper = original.starts_with(char::is_uppercase);
     let mut rest = translation.chars();
@@ -395,8 +395,8 @@ fn has_words(text: &str) -> bool {
 /// Units that look like words.
 const UNITS: [&str; 4] = ["rad", "deg", "min", "mrad"];
 
-/// `true` if a text contains a word that is neither a unit, a name, a symbol, nor part of a path,
-/// an option or a key.
+/// `true` if a text contains a word of prose, as opposed to a unit, a name, a symbol, or a part of a path, an option or
+/// a key.
 fn is_prose(text: &str) -> bool {
     text.split(|c: char| c.is_whitespace() || "()[]\"“”,;:".contains(c)).any(|word| {
         let word = word.trim_end_matches(['.', '?', '!', '…']);

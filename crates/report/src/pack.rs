@@ -22,7 +22,8 @@ pub const TIME_QUANTUM: f64 = 1.0 / 1_048_576.0;
 /// differences of such numbers are exact in double precision.
 const LIMIT: f64 = (1_u64 << 48) as f64;
 
-/// Maximum number of values in a column that need not be exact, but is written as plain numbers because it is short.
+/// Maximum number of values in a column that is always written as plain numbers. A longer column is packed, unless it
+/// must be exact.
 const PLAIN: usize = 512;
 
 fn quantize(value: f64, quantum: f64) -> Option<i64> {

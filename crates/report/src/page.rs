@@ -134,7 +134,7 @@ impl Payload {
         self.columns.len() - 1
     }
 
-    /// `true` if the scene of any player has three-dimensional data.
+    /// Returns `true` if the scene of any player has three-dimensional data.
     fn has_depth(&self) -> bool {
         let mut panes =
             self.players.iter().filter_map(|player| player["panes"].as_array()).flatten();
@@ -249,8 +249,8 @@ pub struct Shell<'a> {
     pub style: &'a str,
     /// Body of the page, as markup.
     pub body: &'a str,
-    /// Data that are available when the scripts start: pairs of the id of an element and its content, which is not yet
-    /// compressed.
+    /// Data that are available when the scripts start: pairs of the id of an element and its content, which
+    /// [`Shell::html`] compresses.
     pub at_hand: &'a [(&'a str, &'a [u8])],
     /// Script of the web workers, stored as text in the element with the id `worker`.
     pub worker: &'a str,

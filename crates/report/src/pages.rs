@@ -357,7 +357,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Returns the height (points) that the beginning of `blocks` needs on the page of the heading above it.
+    /// Returns the height (points) of the beginning of `blocks` that must be on the same page as the heading above
+    /// `blocks`.
     fn least(&self, blocks: &[Block]) -> f64 {
         let Some((first, rest)) = blocks.split_first() else { return 0.0 };
         let figure = |figure: &Figure| self.picture(figure, "measured").1 + 24.0;

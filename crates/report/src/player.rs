@@ -81,8 +81,8 @@ impl Players {
             .collect()
     }
 
-    /// Returns the times (s) of the printed pictures: those of a strip of the scene with the most events, as
-    /// [`Strip::of_run`] selects them.
+    /// Returns the times (s) of the printed pictures, which are the same for all scenes. [`Strip::of_run`] selects
+    /// these times for the scene with the most events.
     fn paper_times(&self) -> Vec<f64> {
         let richest = self.panes.iter().rev().max_by_key(|pane| pane.scene.events.len());
         let strip = richest.map(|pane| Strip::of_run(Arc::clone(&pane.scene), ON_PAPER));

@@ -218,7 +218,8 @@ fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     })
 }
 
-/// The color scale ends at this quantile of the positive values, because the values of impacts far exceed all others.
+/// Quantile of the positive values at which the color scale ends. The scale does not extend to the maximum, because the
+/// values of impacts far exceed all others.
 const TINT_ENDS: f64 = 0.99;
 
 /// Packs a tint in steps of at most 1/64 of its color scale; values beyond the end of the scale are

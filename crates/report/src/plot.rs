@@ -106,7 +106,7 @@ pub enum Scale {
 pub struct Series {
     /// Name in the legend.
     pub label: String,
-    /// Abscissas; points beyond the shorter of `x` and `y` are not drawn.
+    /// Abscissas. If `x` and `y` differ in length, the surplus values of the longer one are not drawn.
     pub x: Vec<f64>,
     /// Ordinates; a value that is not finite makes a gap.
     pub y: Vec<f64>,

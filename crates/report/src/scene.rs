@@ -197,8 +197,8 @@ impl EventKind {
         }
     }
 
-    /// Returns the word in a language. A fall is translated by the entry "falls", because the entry "fall" is the
-    /// plural verb in headings of tables, which is a different word in other languages.
+    /// Returns the word in a language. The word for a fall is the translation of the entry "falls". The entry "fall" is
+    /// reserved for the plural verb in headings of tables, which is a different word in other languages.
     pub(crate) fn word_in(self, language: Language) -> &'static str {
         match (self, language) {
             (_, Language::English) => self.word(),
@@ -404,8 +404,9 @@ fn moving(scene: &Scene) -> impl Iterator<Item = usize> {
     (0..scene.bodies.len()).filter(|&at| scene.bodies[at].role != Role::Ground)
 }
 
-/// Maximum distances by which a window may extend beyond the bodies of the first frame: to the left and to the right,
-/// and upward. They are fractions of the larger side of the rectangle around these bodies.
+/// Maximum distances by which a window may extend beyond the bodies of the first frame. The first distance applies to
+/// the left and to the right, the second upward. Both are fractions of the larger side of the rectangle around these
+/// bodies.
 ///
 /// The horizontal limit is larger because a body that topples comes to rest within the height of the stack, but may
 /// roll farther.

@@ -145,8 +145,8 @@ impl Strip {
         Self { scene, panels: panels.into_iter().collect() }
     }
 
-    /// Draws the panels at equal size. Bodies are defined in the first drawing, with ids that start
-    /// with `id`, and referred to by all drawings.
+    /// Draws the panels at equal size. The first drawing defines the bodies, with ids that start with `id`; all
+    /// drawings refer to these definitions.
     pub(crate) fn drawings(&self, id: &str, language: Language) -> Vec<Drawing> {
         let frames: Vec<Option<usize>> =
             self.panels.iter().map(|p| self.scene.frames.nearest(p.time)).collect();

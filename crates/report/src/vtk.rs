@@ -16,8 +16,8 @@ use crate::{
 
 /// Returns the files of a scene for ParaView, to be written into a separate folder.
 ///
-/// `stack.pvd` is the file to open. There are a `bodies-*.vtp` and a `forces-*.vtp` for each time,
-/// and `bodies.csv` lists the names of the bodies by number.
+/// `stack.pvd` is the file to open. For each time, there is one file `bodies-*.vtp` and one file `forces-*.vtp`. The
+/// file `bodies.csv` lists the index, the name and the role of each body.
 ///
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film). The plane of the scene is y = 0, z
 /// is up, and lengths are in m, rounded to multiples of [`POSE_QUANTUM`](crate::POSE_QUANTUM).

@@ -10,8 +10,8 @@ use super::ReproduceError;
 /// Peak acceleration (g) of the component PEL360 of RSN995 as published by PEER.
 const PEL360_PGA: f64 = 0.358_34;
 
-/// Tolerance (g) for the peak acceleration by which a record is recognized as the paper's, since the peaks that two
-/// agencies publish differ in the sixth digit.
+/// Difference (g) from [`PEL360_PGA`] below which the peak acceleration of a record identifies the paper's record. The
+/// peaks that two agencies publish for this record differ in the sixth digit.
 const PGA_TOLERANCE: f64 = 1e-4;
 
 /// The ground motion of the six barrels.

@@ -20,7 +20,7 @@ pub(super) struct Plan {
     /// The jobs, the longest first.
     pub(super) jobs: Vec<Job>,
     studies: Vec<(Subject, Vec<Factor>)>,
-    /// Number of jobs that belong to no study. They come first in `jobs`.
+    /// Number of jobs that are run even without the studies. They come first in `jobs`.
     single: usize,
 }
 

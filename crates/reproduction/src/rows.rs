@@ -60,9 +60,10 @@ fn top_falls_before_others(summary: &Summary) -> bool {
 
 /// Describes how the changes of a study affect the time that is compared with the `published` time (s).
 ///
-/// If our time without any change is within 5 % of the published time, no change is named. Otherwise, names the changes
-/// that bring our time to the published time or beyond it or, if there are none, the two changes with the largest
-/// effect. The range of our times in the study is added in all cases. Without a study, the result is empty.
+/// If the simulated time without any change is within 5 % of the published time, no change is named. Otherwise, names
+/// the changes that bring the simulated time to the published time or beyond it. If there are none, names the two
+/// changes with the largest effect. The range of the simulated times in the study is added in all cases. Without a
+/// study, the result is empty.
 fn reasons(study: Option<&Study>, published: f64) -> String {
     let Some(study) = study else { return String::new() };
     let time = |summary: &Summary| study.subject.time(summary);

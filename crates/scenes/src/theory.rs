@@ -113,8 +113,8 @@ pub fn slide_in_rectangular_pulse(a: f64, n: f64, duration: f64) -> f64 {
     speed * speed / (2.0 * GRAVITY * n) * (1.0 - n / a)
 }
 
-/// Returns the slip (m) of a block with yield acceleration `n g` under a half-sine pulse of amplitude `a g` and
-/// `duration` (s), by integration in closed form.
+/// Returns the slip (m) of a block with yield acceleration `n g` on ground whose acceleration is a half-sine pulse of
+/// amplitude `a g` and length `duration` (s). The motion is integrated in closed form.
 pub fn slide_in_half_sine(a: f64, n: f64, duration: f64) -> f64 {
     let omega = PI / duration;
     let start = atan(n / (a * a - n * n).sqrt());

@@ -61,8 +61,8 @@ pub struct Selection {
     pub deviation: Vec<f64>,
     /// Number of candidates that can be scaled to the mean of the target by a factor within the limits.
     ///
-    /// The scaled candidate has the ln Sa of the target's mean at the conditioning period. If the target is not
-    /// conditional, the scaled candidate has the same average of ln Sa over all periods as the target's mean.
+    /// A scaled candidate agrees with the mean of the target in one number: ln Sa at the conditioning period or, if the
+    /// target is not conditional, the average of ln Sa over all periods.
     pub eligible: usize,
     /// Number of rounds of exchanges.
     pub rounds: usize,

@@ -53,8 +53,8 @@ impl SelectionTarget {
     /// ```
     ///
     /// # Errors
-    /// If there are fewer than two periods, if they are not in ascending order, if a number is out of range,
-    /// or if the conditioning period is not among them.
+    /// If there are fewer than two periods, if the lists differ in length, if the periods are not in ascending order,
+    /// if a number is out of range, or if the conditioning period is not one of the periods.
     pub fn new(
         periods: &[f64],
         median: &[f64],

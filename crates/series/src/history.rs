@@ -126,11 +126,11 @@ impl History {
         Sampled::with_initial_velocity(even, acceleration, self.at(0.0).velocity)
     }
 
-    /// Returns the time (s) from which the absolute acceleration stays below a limit (m/s²).
+    /// Returns a time (s) from which the absolute acceleration does not exceed a limit (m/s²).
     ///
-    /// For a sampled history, this is the time of the sample that follows the last sample above the
-    /// limit. For an analytic history, this is the end of the history, because the shaking stops
-    /// abruptly.
+    /// For a sampled history, this is the time of the sample that follows the last sample above the limit. For an
+    /// analytic history, this is the end of the history, because the shaking stops abruptly. For a sum of `n`
+    /// histories, this is the latest of the times of its parts, each computed for the limit divided by `n`.
     pub fn calm_from(&self, limit: f64) -> f64 {
         match self {
             Self::Sampled(sampled) => {

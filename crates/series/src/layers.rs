@@ -1,8 +1,8 @@
 //! Fast approximate response spectra: each oscillator runs at the coarsest sufficient time step.
 //!
-//! A search evaluates spectra thousands of times. Its result is then checked by the exact recursion
-//! of [`crate::response`]. The approximate peaks differ from the exact peaks by at most 0.6 % with
-//! 20 steps per period and by 0.3 % with 40.
+//! A search, such as spectral matching, evaluates spectra thousands of times; its result is then checked with the exact
+//! recursion of [`crate::response`]. The approximate peaks differ from the exact peaks by at most 0.6 % with 20 steps
+//! per period and by 0.3 % with 40.
 
 use crate::math::{self, TAU};
 use crate::response::{TOGETHER, larger};

@@ -166,7 +166,8 @@ pub fn event(spec: &MotionSpec) -> Result<Option<String>, GroundError> {
     }
 }
 
-/// Returns the requested components of a record, processed according to the scenario.
+/// Returns the requested components of a record, processed according to the scenario. They are also scaled if `scale`
+/// specifies a measure of both horizontal components.
 fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
     require_strong_motion(record)?;
     let mut warnings: Vec<String> =
@@ -213,8 +214,8 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
 }
 
 /// Aligns a horizontal component in time with the first channel of the separate file that contains the vertical
-/// component, if both files state their start times. Returns both records, with a warning if their headers suggest that
-/// they do not belong together.
+/// component, if both files state their start times. Returns the two records, each with this channel only, and a
+/// warning if their headers suggest that they do not belong together.
 fn on_one_clock(
     record: &Record,
     horizontal: &Component,
@@ -256,8 +257,8 @@ fn horizontals(of: MeasuredOn) -> Option<Horizontals> {
 
 /// Scales the motion so that a measure of both horizontal components of its record reaches the specified value.
 ///
-/// The components are processed like the motion. If `scale` is not for a measure of both components, the motion is
-/// returned unchanged.
+/// The components are processed like the motion. If `scale` does not specify a measure of both components, the motion
+/// is returned unchanged.
 fn scaled_by_both(
     motion: GroundMotion,
     record: &Record,

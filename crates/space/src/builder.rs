@@ -34,7 +34,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) held: Vec<(Element<Spatial>, &'static Words)>,
     /// Contact pairs between the ground and the bearings of platforms.
     pub(crate) bearings: Vec<ContactPair>,
-    /// Height (m) by which devices under the stack, such as isolators, raise it.
+    /// Height (m) by which devices under the stack, such as isolators, raise the stack.
     pub(crate) raised: f64,
 }
 

@@ -388,9 +388,10 @@ fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
-/// Returns two invisible points at opposite corners of a rectangle, so that the picture contains the rectangle. In a
-/// free scene, the rectangle contains the paths of all bodies. In the view of a stack from above, its sides are as far
-/// from the origin as the paths require, but not closer than 0.7 and not farther than 1.5 times the height of the
+/// Returns two invisible points at opposite corners of a rectangle, so that the picture contains the rectangle.
+///
+/// In a free scene, the rectangle contains the paths of all bodies. In the view of a stack from above, the sides of the
+/// rectangle are as far from the origin as the paths require, but at least 0.7 and at most 1.5 times the height of the
 /// stack. In the other views of a stack, the picture is not enlarged.
 fn yard(run: &Run, sight: Sight) -> SceneBody {
     let corners = if run.stack.is_free() {

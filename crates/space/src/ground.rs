@@ -41,7 +41,7 @@ impl Ground {
     /// that `motion` names acts across the barrels.
     ///
     /// # Errors
-    /// As [`Ground::of`].
+    /// The same as for [`Ground::of`].
     pub fn of_spec(motion: &MotionSpec, similitude: f64) -> Result<Self, GroundError> {
         let first = of_spec(motion, similitude)?;
         let second = other_component(motion)?;

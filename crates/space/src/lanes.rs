@@ -1,7 +1,8 @@
 //! Three-dimensional cases that run side by side in the lanes of a vector register. Only their results are kept.
 //!
-//! The results are bit-identical to those of separate runs. Cases can share a register if their models have the same
-//! [`Topology`](lanes::Topology). When the case of a lane has ended, the lane takes the next case.
+//! The results are bit-identical to those of separate runs. Cases can share a register only if they have the same
+//! method of integration, with fixed time steps, and models with the same [`Topology`](lanes::Topology). When the case
+//! of a lane has ended, the lane takes the next case.
 
 use std::sync::Arc;
 

@@ -136,7 +136,7 @@ pub fn document(answer: &Answer) -> Document {
     }
 }
 
-/// States which run is shown, with its outcome beside those of all variants; empty without variants.
+/// States which run is shown, what its outcome is, and how many variants collapse. Empty if there are no variants.
 fn shown_run(summary: &Summary) -> String {
     let kind = summary.outcome.common.kind;
     let outcome = summary.ensemble.iter().map(|spread| ShownOutcome { view: None, kind, spread });

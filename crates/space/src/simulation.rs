@@ -100,7 +100,7 @@ impl Prepared {
     /// a given ground motion.
     ///
     /// # Errors
-    /// As [`Simulation::new`].
+    /// The same as for [`Simulation::new`].
     pub(crate) fn new(scenario: &Scenario, ground: Ground) -> Result<Self, RunFailure> {
         let stack = Stack::of(scenario)?;
         let end_time = affordable(scenario, &stack, &ground)?;

@@ -203,7 +203,8 @@ fn checked(plane: &Plane) -> Result<Ground, RunFailure> {
     Ok(ground)
 }
 
-/// Returns the same results as [`run_all`], with a first verdict as for plane models.
+/// Returns the same results as [`run_all`]. In addition, reports a first verdict, based on the first variants alone, to
+/// the observer, as for plane models.
 fn run_with_first_verdict(
     plane: &Plane,
     report: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
@@ -373,8 +374,9 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
     remedy_by(&answer.scenario, &as_it_is, (&prepare, FIRST), observer)
 }
 
-/// Number of variants in the first block of a change in the search for a remedy. They do not fill the lanes of a vector
-/// register: a few runs one after the other, which usually reject the change, take less time than a bundle.
+/// Number of variants in the first block of a change in the search for a remedy. This number is too small to fill the
+/// lanes of a vector register. However, a few runs usually suffice to reject a change, and take less time one after the
+/// other than a whole bundle of runs.
 const FIRST: usize = 2;
 
 /// Loads the ground-motion records of a three-dimensional scenario, and returns the scenario with its variants.
@@ -388,7 +390,7 @@ fn plane(scenario: &Scenario) -> Result<Plane, GroundError> {
 /// The observer may stop the work; the results until then are returned.
 ///
 /// # Errors
-/// As [`run_all`], and if the stack of the selected run cannot be built or does not stand.
+/// The same as for [`run_all`], and if the stack of the selected run cannot be built or does not stand.
 pub fn answer(
     scenario: &Scenario,
     choice: RunChoice,

@@ -1,4 +1,4 @@
-//! Sentences about a three-dimensional run: the same as about a run of a plane model, but with directions.
+//! Sentences about a three-dimensional run. Unlike the sentences about a planar run, they state directions.
 
 use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::{CollapseMode, Outcome};
@@ -145,7 +145,8 @@ fn debris(counts: [u32; 2], when: &str) -> Option<String> {
     })
 }
 
-/// Smallest share of fallen barrels for which the direction in which most of them are displaced is stated.
+/// Smallest share of the fallen barrels for which the main direction of displacement is stated. If the share of barrels
+/// displaced in this direction is smaller, the numbers across and along the barrels are called about equal.
 const CLEAR: f64 = 0.55;
 
 /// Maximum number of bodies of a free scene that the console output lists individually; the output files list all

@@ -122,7 +122,7 @@ impl Checked {
 /// Checks a scenario: performs all steps of a run that precede the shaking.
 ///
 /// # Errors
-/// Same as [`Scenario::run`].
+/// The same as for [`Scenario::run`].
 pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     let scenario = &scenario.with_records(&mut from_disk)?;
     let ground = scenario.ground()?;

@@ -95,7 +95,8 @@ impl Outcome {
     }
 }
 
-/// Judges a run by the first body that left its seat, because later losses of seats follow from the first.
+/// Judges a run by the first body that left its seat, because later losses of seats follow from the first. This body
+/// determines the collapse mode:
 ///
 /// - The bottom rack: overturning of the whole stack.
 /// - A rack that passed the ends of the barrels below before it tilted, in a longitudinal view: rack

@@ -9,8 +9,8 @@ use crate::assemble::{AssembleError, Assembly, Part, PartKind};
 /// by less.
 pub const ALLOWED: f64 = 2e-3;
 
-/// Number of corners n of the polygon that represents a circle; the polygon lies inside the circle by at most `r (1 −
-/// cos π/n)`.
+/// Number of corners n of the polygon that represents a circle; the sides of the polygon lie inside the circle, at a
+/// distance of at most `r (1 − cos π/n)`, where r is the radius of the circle.
 const AROUND: usize = 256;
 
 /// Rejects an initial state in which bodies overlap.

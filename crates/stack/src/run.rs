@@ -232,7 +232,8 @@ pub(crate) fn conclude(
 /// scale, so that the run is equivalent to the run at full size.
 ///
 /// # Errors
-/// If the step in the scenario is above the critical step, beyond which every explicit fixed-step method is unstable.
+/// If the method has a fixed step, and the step in the scenario is not below the critical step, beyond which every
+/// explicit fixed-step method is unstable.
 pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let Some(step) = scenario.run.step.map(|step| step * scale) else {

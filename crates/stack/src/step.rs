@@ -341,8 +341,8 @@ fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, 
 /// Returns the number of nodes of a pair that are in contact at the same time, or their tributary length (m) if the
 /// contact constants are given per length.
 ///
-/// Of fixed nodes, the fraction that `share` returns is in contact, but at least two nodes. Fixed nodes with constants
-/// per seat count as one node.
+/// For fixed nodes, `share` returns the fraction that is in contact; at least two nodes are assumed to be in contact.
+/// Fixed nodes with constants per seat count as one node.
 fn facing(
     model: &Model<Planar>,
     pair: &ContactPair,

@@ -1,5 +1,5 @@
-//! A number type that counts arithmetic operations, so that the work of a time step can be compared with earlier
-//! versions of the program.
+//! A number type that counts arithmetic operations, so that the work of a time step can be compared between versions of
+//! the program.
 //!
 //! Counts depend on the algorithm only, not on the machine, its load or the compiler.
 

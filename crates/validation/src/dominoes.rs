@@ -1,4 +1,5 @@
-//! A row of dominoes, modeled as a room in which each domino is a stack, and the theoretical speed of its wave.
+//! A row of toppling dominoes, modeled as a room in which each domino is a stack. The module computes the speed of the
+//! wave that runs along the row, both by simulation and from theory.
 
 use std::ops::ControlFlow;
 

@@ -6,8 +6,8 @@
 //! cases/*.csv ───────┴─▶ fitted probability of a fall ─▶ likelihoods, posterior ─▶ field.md, tables, figure
 //! ```
 //!
-//! [`evaluate`] is a function of the observations and the simulated cases alone, so that a test can check the page
-//! against them; the cases are made by `cargo xtask field`.
+//! [`evaluate`] depends only on the observations and the simulated cases, so that a test can check the page against
+//! these inputs. `cargo xtask field` simulates the cases.
 
 mod cases;
 mod chance;

@@ -11,8 +11,8 @@
 //!
 //! Penalty contact has two small parameters, the time step and the duration of a contact. A refinement halves both: the
 //! time step directly, and the duration of a contact by making it four times as stiff, with the same damping ratio. In
-//! the limit the bodies are rigid, as in the closed-form solution, and the order is the order of convergence to the
-//! exact answer. Thresholds found by bisection have no order.
+//! the limit, the bodies are rigid, as in the closed-form solution. The measured order is therefore the order of
+//! convergence to the exact answer. Thresholds found by bisection have no order.
 //!
 //! # Adding a problem
 //!

@@ -31,7 +31,8 @@ pub struct Ride {
     pub peak: f64,
 }
 
-/// Rotation (rad) beyond which a block cannot recover.
+/// Rotation (rad) beyond which a block counts as overturned. With the linearized equations of [`Rocker::slender`], this
+/// rotation is 5 α instead.
 pub const OVERTURNED: f64 = 1.2;
 
 /// Angular velocity (rad/s) below which an impact brings the block to rest.
@@ -192,7 +193,8 @@ mod tests {
     use super::*;
     use crate::drive::Shake;
 
-    /// Returns the strength of the pulse at the boundary between safe and overturned, in units of g tan α.
+    /// Returns the amplitude of the pulse at the boundary between standing and overturning, as a multiple of the ground
+    /// acceleration at uplift.
     fn border(
         rocker: &Rocker,
         pulse: impl Fn(f64) -> Shake,

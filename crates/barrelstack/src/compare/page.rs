@@ -433,8 +433,8 @@ fn players(sides: &[Side]) -> Players {
     }
 }
 
-/// `true` if all runs have the same motion; the length scales must also be equal, because time is
-/// scaled with them.
+/// Returns `true` if all runs have the same motion and the same length scale. The length scale matters because it also
+/// determines the time scale of the motion.
 fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
     let motion = |side: &'a Side| (&side.scenario.motion, side.scenario.run.similitude);
     let mut motions = sides.into_iter().map(motion);

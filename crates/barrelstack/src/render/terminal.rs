@@ -7,7 +7,8 @@ use crate::outcome::Outcome;
 use crate::report;
 use crate::run::Run;
 
-/// Draws the last frame of a run, at most 72 columns wide; empty for an invalid run.
+/// Draws the last frame of a run as lines of text, at most 72 columns wide. Returns no lines if the run is invalid or
+/// has no frames.
 pub fn final_picture(run: &Run, characters: Characters) -> Vec<String> {
     let broke_down = matches!(run.outcome, Outcome::Invalid { .. });
     match run.recording.frames.times.len().checked_sub(1) {

@@ -87,7 +87,7 @@ fn ground(run: &Run) -> Option<History> {
     Some(History { label: format!("{}, {}", first.label, view.words()), ..first })
 }
 
-/// States over which variants the ranges of results are taken.
+/// Text that explains which variants the ranges of results include.
 pub const RANGES: &str = "Ranges span the 5th to the 95th percentile of the variants. The times of the first loss of \
                           a seat are those of all variants that collapse while they are shaken. The times of the \
                           first fall are only those of variants in which a barrel falls, so their range may start or \

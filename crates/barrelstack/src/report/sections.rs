@@ -192,8 +192,8 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
 }
 
 /// Returns the range of values to plot: it contains zero and all values up to half a second after the collapse, with a
-/// margin at both ends. Returns `None`, with which a plot shows all values, if there is no collapse or if all values up
-/// to that time are zero.
+/// margin at both ends. Returns `None` if there is no collapse, or if all values up to that time are zero; a plot with
+/// the range `None` shows all values.
 ///
 /// In a plot over this range, falling bodies leave the plot, as in the histories of Candia, de la Llera and Almazán
 /// (2008).
@@ -361,7 +361,8 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     Figure::new(format!("stress-{name}"), caption, picture)
 }
 
-/// States which part of a rack the model contains, if it is a slice along the barrels; empty if racks are whole.
+/// States that the model in the plane along the barrels is a slice one barrel wide, and which forces it gives. Empty
+/// for all other models, and if a rack carries only one barrel.
 fn slice(run: &Run) -> String {
     let barrels = run.scenario.stack().map_or(1, |stack| stack.rack.barrels);
     if run.assembly.view != Some(View::Longitudinal) || barrels == 1 {

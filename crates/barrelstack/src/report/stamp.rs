@@ -11,7 +11,7 @@ use barrelstack_report::Stamp;
 /// when it is built, so that the pages of two builds can be compared bit for bit, as the tests do.
 ///
 /// # Errors
-/// When the date is unknown: returns the reason, which each page then states in place of the date.
+/// Returns the reason why the date is unknown; each page then states this reason in place of the date.
 #[expect(clippy::disallowed_methods, reason = "pages state their commit, which enters no result")]
 pub fn stamp_pages(built: &str) -> Result<(), String> {
     let commit = std::env::var("BARRELSTACK_COMMIT").unwrap_or_else(|_| built.to_owned());

@@ -13,7 +13,8 @@ use crate::variants::words::ShownOutcome;
 use crate::variants::{self, Remedy};
 use crate::verify::Verification;
 
-/// Returns the verdict on all variants if they were run, otherwise the verdict on the single run with its plane.
+/// Returns the verdict on all variants or, if no variants were run, the verdict on the single run. The verdict on a
+/// single run names the plane of the run, if there is one.
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     let spreads = summary.spreads();
     if spreads.is_empty() {
@@ -23,8 +24,8 @@ pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     variants::words::headline(&spreads)
 }
 
-/// Describes the result of the shown run in one sentence, without naming the plane of the run; for a stack with results
-/// in two planes.
+/// Describes the result of the shown run in one sentence that does not name the plane of the run. The sentence is meant
+/// for a stack with results in two planes.
 pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
     single(run, summary, None, "barrels in this plane")
 }
@@ -200,8 +201,8 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// Returns the command that compares the stack as it is with the changes that suffice; empty if there is no such
-/// command. Absolute paths in the command are shortened to file names.
+/// Returns the command that compares the stack as it is with the changes that would have kept it standing; empty if
+/// there is no such command. Absolute paths in the command are shortened to file names.
 pub fn command(remedy: Option<&Remedy>) -> String {
     let command = remedy.and_then(|found| found.comparison.as_deref());
     let word = |word: &str| {
@@ -214,7 +215,8 @@ pub fn command(remedy: Option<&Remedy>) -> String {
     command.map(|text| text.split(' ').map(word).collect::<Vec<_>>().join(" ")).unwrap_or_default()
 }
 
-/// States which run is shown, with its outcome beside those of all variants; empty without variants.
+/// States which run is shown, and compares its outcome with the outcomes of all variants; empty if no variants were
+/// run.
 pub(super) fn shown_run(summary: &Summary) -> String {
     let planes = summary.planes();
     let several = planes.len() > 1;

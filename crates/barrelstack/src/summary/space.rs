@@ -178,14 +178,14 @@ described! {
 }
 
 impl Directions {
-    /// Returns the number of variants whose first loss of a seat is across the barrels, and the number of variants in
-    /// which it is along the barrels.
+    /// Returns the numbers of variants by the direction of the first loss of a seat: across the barrels, and along the
+    /// barrels.
     pub fn first(&self) -> [u32; 2] {
         [self.first_right + self.first_left, self.first_away + self.first_near]
     }
 
-    /// Returns the number of fallen barrels, in all variants, whose displacement from rest is mainly across the
-    /// barrels, and the number of those whose displacement is mainly along the barrels.
+    /// Returns the numbers of fallen barrels, in all variants, by the main direction of their displacement from rest:
+    /// across the barrels, and along the barrels.
     pub fn debris(&self) -> [u32; 2] {
         [self.debris_right + self.debris_left, self.debris_away + self.debris_near]
     }

@@ -72,9 +72,9 @@ impl Remedy {
         )
     }
 
-    /// If a lower stack suffices, names the changes that were tried and would not have been enough. These changes are
-    /// stacks with more levels than the sufficient stack. If none of the pretensions of straps suffices, straps are
-    /// named too. Empty if there are no such changes.
+    /// If a lower stack suffices, names the changes that were tried and would not have been enough: the stacks with
+    /// more levels than the sufficient stack, and the straps if none of their pretensions suffices. Empty if no lower
+    /// stack suffices, or if there are no such changes.
     fn not_enough(&self) -> String {
         let Some(height) = &self.height else { return String::new() };
         let higher = self
@@ -148,8 +148,8 @@ impl Remedy {
     }
 
     /// States, for each sufficient change, the upper confidence bound of the share of stacks that fall, adjusted for
-    /// the number of candidates. If `averaged` is set, a statement of the range over the uncertain constants follows,
-    /// so the sentence adds that this share is an average over these constants.
+    /// the number of candidates. If `averaged` is set, the sentence adds that this share is an average over the
+    /// uncertain constants, because the next sentence states the range over these constants.
     fn confidence(&self, averaged: bool) -> String {
         let at_most = |one: &Tried| one.interval.map(|[_, high]| percent(high));
         let most = match (&self.height, &self.straps) {

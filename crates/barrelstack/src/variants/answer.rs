@@ -22,8 +22,8 @@ use crate::summary::{Summary, Unfinished};
 pub enum Advance {
     /// Progress of the variants.
     Variants {
-        /// Number of finished cases: variants and, if it is run, the nominal case. A stack in two planes has one case
-        /// per plane for each of them.
+        /// Number of finished cases. The variants are counted, and also the nominal case if it is run. For a stack in
+        /// two planes, each of them counts as two cases, one per plane.
         done: usize,
         /// Number of all cases, finished or not, counted like `done`.
         of: usize,
@@ -62,7 +62,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// `true` if any part of the work was interrupted.
+    /// Returns `true` if any part of the work was interrupted.
     pub fn is_stopped(&self) -> bool {
         let mut planes = std::iter::once(&self.decides).chain(&self.other);
         planes.any(|shown| shown.run.interrupted || shown.summary.unfinished.is_some())
@@ -85,7 +85,7 @@ impl Answer {
     /// The observer receives the progress and may cancel.
     ///
     /// # Errors
-    /// When that variant cannot be run.
+    /// If that variant cannot be run.
     pub(crate) fn showing(
         &self,
         number: u32,
@@ -153,7 +153,7 @@ pub struct Shown {
 /// The observer receives the progress and may cancel; a canceled answer has the results obtained so far.
 ///
 /// # Errors
-/// As [`Scenario::run`].
+/// As for [`Scenario::run`].
 pub fn answer(
     scenario: &Scenario,
     choice: RunChoice,
@@ -168,7 +168,7 @@ pub fn answer(
 /// [`run_some`](super::run_some) returns them.
 ///
 /// # Errors
-/// As [`answer`].
+/// As for [`answer`].
 pub fn answer_of(
     scenario: &Scenario,
     results: Vec<Vec<CaseResult>>,
@@ -248,7 +248,8 @@ const FIRST: u32 = 8;
 pub type RunCases<'a, R, E> = dyn Fn(&[u32], RunCounter<'_>) -> Result<R, E> + 'a;
 
 /// Runs the nominal case and the variants with the lowest numbers, reports their verdict, and then runs all other
-/// variants. Returns the results of the first part, up to the verdict, and of the second part, all other variants.
+/// variants. Returns two results: those of the first part (the cases on which the verdict is based), and those of the
+/// second part (all other variants).
 ///
 /// If the second part would have fewer variants than the first part, all cases are run at once: the results of the
 /// second part are then `None`, and no first verdict is reported.

@@ -392,12 +392,12 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     Some(Fitted::of(&fitted, &constants))
 }
 
-/// Returns, for every draw of the uncertain constants, the share of collapses in the plane in which more stacks
-/// collapse.
+/// Returns the share of collapses for every draw of the uncertain constants. If there are several planes, the largest
+/// of their shares is returned for each draw.
 ///
-/// The share also has a random error, drawn from the error distribution of the regression. Draws with the same index
-/// have the same constants for all stacks with the same planes. `verdicts` holds the verdicts of the variants in every
-/// plane. Returns `None` in the same cases as [`range`].
+/// The share also has a random error, drawn from the error distribution of the regression. For all stacks with the same
+/// uncertain constants and the same correlations, draws with the same index use the same values of the constants.
+/// `verdicts` holds the verdicts of the variants in every plane. Returns `None` in the same cases as [`range`].
 pub(super) fn draws(planes: &[Plane], verdicts: &[Vec<Option<bool>>]) -> Option<Vec<f64>> {
     let of = |(plane, verdicts): (&Plane, &Vec<_>)| Some(fit(plane, verdicts)?.0.shares());
     let shares = planes.iter().zip(verdicts).map(of).collect::<Option<Vec<Vec<f64>>>>()?;

@@ -54,8 +54,8 @@ pub use spread::{FEW, LEVEL, Range, Spread, verdict};
 pub struct Plane {
     /// The nominal case.
     pub scenario: Scenario,
-    /// The motion with the other horizontal component, which applies to the second half of the variants if the stack is
-    /// analyzed in both planes; `None` for a stack that is not, or if the motion has no other horizontal component.
+    /// Motion of the second half of the variants, with the other horizontal component. `None` if the stack is not
+    /// analyzed in both planes, or if the motion has no other horizontal component.
     exchanged: Option<MotionSpec>,
 }
 

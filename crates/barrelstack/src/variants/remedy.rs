@@ -1,9 +1,9 @@
 //! Remedies for a stack that falls: the smallest reduction of height, and the loosest straps, that
 //! suffice.
 //!
-//! A change suffices if enough variants of the changed stack stand in every plane. The changed
-//! stack has the same number of variants as the original stack, with the same numbers. The module
-//! `search` defines the order and the statistics of the search; this module runs it.
+//! A change suffices if enough variants of the changed stack stand in every plane. The variants of the changed stack
+//! have the same numbers as the variants of the original stack. The module `search` defines the order and the
+//! statistics of the search; this module runs the search.
 
 mod search;
 
@@ -417,7 +417,8 @@ fn given(scenario: &Scenario, table: &str) -> Vec<String> {
 }
 
 impl Change {
-    /// Prepares the variants of the changed stack, as the change with this number that is tried.
+    /// Prepares the variants of the changed stack. `number` is the number of the change, in the order in which changes
+    /// are first tried.
     fn start(&self, prepare: &Prepare<'_>, number: usize) -> Result<Started, GroundError> {
         let mut scenario = self.scenario.clone();
         // The motion after a collapse does not matter here.

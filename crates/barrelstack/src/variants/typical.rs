@@ -15,7 +15,7 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Selects the runs to show from results, of which the first is that of the nominal case. Only a case that was
+    /// Selects the runs to show from `results`, whose first element belongs to the nominal case. Only a case that was
     /// shaken and has a verdict can be selected; if there is no such case, the nominal case is selected.
     pub(super) fn of(results: &[CaseResult]) -> Self {
         let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();

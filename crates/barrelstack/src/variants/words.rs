@@ -29,7 +29,7 @@ enum Judgment {
     Stands,
     /// No variant falls, but fewer than [`ENOUGH`] variants have a verdict.
     TooFew,
-    /// The runs end at this time (s), before the motion ends; until this time, hardly any variant or none falls.
+    /// The runs end at this time (s), before the motion ends. At most a share of [`STANDS`] of the variants falls.
     Cut(f64),
     /// No variant could be judged.
     None,
@@ -319,8 +319,8 @@ pub fn course(spread: &Spread) -> String {
     course_of("barrels", spread)
 }
 
-/// Like [`course`], for one plane of a stack that was simulated in both planes; the barrels are called "barrels in this
-/// plane".
+/// Describes the fall as [`course`] does, but for one plane of a stack that was simulated in both planes. The barrels
+/// are called "barrels in this plane".
 pub(crate) fn course_in_plane(spread: &Spread) -> String {
     course_of("barrels in this plane", spread)
 }

@@ -91,10 +91,11 @@ pub(crate) struct Built {
     pub(crate) ground: Shaking,
 }
 
-/// Simulates all cases on all cores and returns their courses in order; `None` for a case that cannot be simulated.
+/// Simulates all cases on all cores and returns their courses in order. The course of a case that cannot be simulated
+/// is `None`.
 ///
-/// `done` is called repeatedly with the number of completed cases and may cancel the remaining ones; the
-/// function then returns `None`.
+/// `done` is called repeatedly with the number of completed cases, and may cancel the remaining cases. If it does,
+/// `simulate` returns `None` instead of the courses.
 pub(crate) fn simulate(
     cases: Vec<Built>,
     lanes: Option<Width>,

@@ -14,9 +14,9 @@ pub struct Errors {
     pub reading: f64,
     /// Increase of the standard deviation of a time, in seconds per second after the first loss of a seat.
     ///
-    /// The course of a collapse departs more and more from that of any model. For example, in a stack of eight
-    /// barrels, a barrel that falls two seconds after the loss of a seat falls half a second earlier or later if one
-    /// contact parameter changes by 10 %.
+    /// The longer a collapse lasts, the more its course differs from the course that any model predicts. For example,
+    /// in a stack of eight barrels, a barrel that falls two seconds after the loss of a seat falls half a second
+    /// earlier or later if one contact parameter changes by 10 %.
     pub growth: f64,
     /// Probability that an observed mode, first barrel or time differs from the simulated one for a reason outside the
     /// model.

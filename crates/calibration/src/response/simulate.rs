@@ -74,7 +74,8 @@ pub(super) struct Simulator<'a> {
     stopped: AtomicBool,
 }
 
-/// Progress callback with the number of simulations started, called repeatedly from several threads; may cancel.
+/// Progress callback, called repeatedly from several threads. It receives the number of simulations started so far, and
+/// may cancel the simulations.
 pub(super) type Report<'a> = dyn Fn(usize) -> ControlFlow<()> + Sync + 'a;
 
 impl<'a> Simulator<'a> {
@@ -102,7 +103,7 @@ impl<'a> Simulator<'a> {
         Ok(Self { scenario, measured, tunable, count, report, stopped })
     }
 
-    /// Returns the number of simulations run.
+    /// Returns the number of simulations started so far.
     pub(super) fn count(&self) -> usize {
         self.count.load(Ordering::Relaxed)
     }
@@ -112,8 +113,8 @@ impl<'a> Simulator<'a> {
         self.stopped.load(Ordering::Relaxed)
     }
 
-    /// Runs the scenario unchanged and checks that it has the recorded channels; returns a warning if the stack
-    /// collapses.
+    /// Runs the unchanged scenario and checks that the run has a channel for every recorded channel. Returns a warning
+    /// if the stack collapses.
     pub(super) fn first(&self) -> Result<Option<String>, CalibrateError> {
         let run = self.run(&vec![0.0; self.tunable.parameters().len()])?;
         if self.stopped() {

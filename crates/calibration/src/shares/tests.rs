@@ -28,8 +28,8 @@ fn statement(kind: &str, numbers: &str) -> Statement {
 }
 
 /// For each campaign, true parameters, a true motion and a true mixture of heights are drawn at random. The results of
-/// 300 simulated stacks are drawn from the closed form ([`chance`]). The statement gives the true share with a standard
-/// error of 1 %. The fit adds the model error to this error, although the closed form has no model error.
+/// 300 simulated stacks are drawn from the closed form ([`chance`]). The observation states the true share with a
+/// standard error of 1 %. The fit adds the model error to this error, although the closed form has no model error.
 #[test]
 fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     let heights = heights(&[4, 5, 6]);

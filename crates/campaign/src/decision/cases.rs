@@ -120,9 +120,9 @@ pub struct JudgedCase {
     intensities: Box<[f64]>,
     /// Index of the curve to which the case belongs.
     ///
-    /// A curve consists of the cases of one motion that agree in all factors except those drawn for each case. In an
-    /// incremental dynamic analysis, a curve is one hunt: all runs of the search for the level at which one motion
-    /// makes the stack collapse.
+    /// If cases are independent samples, each case is a curve. Otherwise, a curve consists of the cases of one motion
+    /// that agree in all factors except those drawn for each case. In an incremental dynamic analysis, a curve is one
+    /// hunt: all runs of the search for the level at which one motion makes the stack collapse.
     pub curve: u32,
 }
 
@@ -162,8 +162,8 @@ pub struct Cases {
     pub modes: Vec<String>,
     /// Intensity measures of the cases.
     pub measures: Vec<Measure>,
-    /// Index in `measures` of the intensity measure of the study: that of the levels to which motions are scaled, or
-    /// `pgv` if they are not scaled to levels.
+    /// Index in `measures` of the intensity measure of the study. This is the measure to whose levels the motions are
+    /// scaled or, if they are not scaled to levels, `pgv`.
     pub main: usize,
     /// `true` if every motion was scaled to a requested level of the study's intensity measure. The share of cases that
     /// collapse can then be computed at each level.
@@ -221,7 +221,7 @@ pub(super) struct Reading {
     curves: Numbering,
     /// Number of rows read so far.
     rows: usize,
-    /// Number of rows read so far that are independent samples; each sample is a separate curve.
+    /// Number of rows read so far, not counting the cases of a Saltelli design that combine the values of two samples.
     own: usize,
     /// Number of varied quantities of a Saltelli design; 0 for other designs. A block of the design has two cases more
     /// than this number.
@@ -446,10 +446,10 @@ impl Cases {
 
     /// Groups the cases by intensity, in ascending order.
     ///
-    /// If cases share levels, the groups are the levels of the study. Otherwise the groups are bins with equal numbers
-    /// of neighboring cases, and the intensity of a bin is the geometric mean over its cases. A bin has at least 24
-    /// cases (or all cases, if there are fewer), because the fraction of failures in a smaller bin would be too
-    /// uncertain. There are at most 16 bins, because a trend is easiest to recognize with about a dozen.
+    /// If [`Cases::shares_levels`] returns `true`, the groups are the levels of the study. Otherwise the groups are
+    /// bins with equal numbers of neighboring cases, and the intensity of a bin is the geometric mean over its cases. A
+    /// bin has at least 24 cases (or all cases, if there are fewer), because the fraction of failures in a smaller bin
+    /// would be too uncertain. There are at most 16 bins, because a trend is easiest to recognize with about a dozen.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&JudgedCase>)> {
         let mut sorted: Vec<(f64, &JudgedCase)> = self
             .all
@@ -476,7 +476,9 @@ impl Cases {
         found
     }
 
-    /// Returns `true` if several cases share each level of a measure.
+    /// Returns `true` if [`Cases::groups`] groups the cases by the levels of a measure instead of bins. The measure
+    /// must be the intensity measure of the study, with levels that do not depend on earlier runs. In a study of
+    /// independent samples, the levels must also have at least eight cases on average.
     pub fn shares_levels(&self, measure: usize) -> bool {
         if !self.leveled || self.hunted || measure != self.main {
             return false;
@@ -496,7 +498,8 @@ const FEWEST_OF_BIN: usize = 24;
 /// Maximum number of bins.
 const MOST_BINS: usize = 16;
 
-/// Minimum mean number of cases per level. With fewer cases, neighboring levels are counted together in bins.
+/// Minimum mean number of cases per level in a study of independent samples. With fewer cases, the cases are grouped in
+/// bins that may contain several levels.
 const FEWEST_OF_LEVEL: usize = 8;
 
 /// Formats a value of a factor; `None` gives an empty string.

@@ -57,9 +57,10 @@ pub struct LimitCurve {
     pub left_out: Option<LeaveOneOut>,
     /// Goodness of fit of the fitted curve to the raw counts; `None` if there is no fitted curve.
     pub goodness: Option<Goodness>,
-    /// Result of the test of the assumption that failure becomes likelier with intensity.
+    /// Result of the test of whether failure becomes likelier with intensity.
     pub monotony: Monotony,
-    /// Curves (each of one motion) on which the stack failed at one intensity and stood at a higher one.
+    /// Curves on which the stack failed at one intensity and stood at a higher one. A curve consists of cases of one
+    /// motion at several intensities.
     ///
     /// Empty for independent samples, since each sample is a separate curve.
     pub returned: Vec<Returned>,
@@ -187,10 +188,12 @@ pub(super) fn stripe(
 
 /// Returns observations of the capacity of the stack, that is, of the intensity at which the stack fails.
 ///
-/// In general, each case is one observation: the stack failed or stood at the intensity of the case. In an incremental
-/// dynamic analysis, the levels of a hunt depend on the results of earlier runs, so counts at these levels would be
-/// biased. Each hunt is therefore one observation: the capacity lies between the lowest level at which the stack failed
-/// and the level below it, or beyond the first or last level if there is no such pair.
+/// In general, each case is one observation: the stack failed or stood at the intensity of the case.
+///
+/// In an incremental dynamic analysis, a hunt searches for the level at which one motion makes the stack collapse. Its
+/// levels depend on the results of earlier runs, so counts at these levels would be biased. Each hunt is therefore one
+/// observation: the capacity lies between the lowest level at which the stack failed and the level below it, or beyond
+/// the first or last level if there is no such pair.
 fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
     let measured = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
     if !cases.hunted {
@@ -218,8 +221,8 @@ fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> 
         .collect()
 }
 
-/// Counts cases and failures of an incremental dynamic analysis at up to eight intensities. A case is a hunt; it counts
-/// at an intensity only if it shows whether the stack fails there.
+/// Counts cases and failures of an incremental dynamic analysis at up to eight intensities. Each hunt is a case, and
+/// counts at an intensity only if the hunt shows whether the stack fails there.
 fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     let bounds: Vec<(f64, f64)> = evidence.iter().map(|item| item.capacity.bounds()).collect();
     let ends = || bounds.iter().flat_map(|(low, high)| [*low, *high]);

@@ -52,8 +52,8 @@ pub struct Losses {
 }
 
 impl Losses {
-    /// Returns the mean losses at each level, or the reason why they are unknown. Only cases that were
-    /// simulated until nothing moved are counted.
+    /// Returns the mean losses at each level, or the reason why no losses are reported. Only cases that were simulated
+    /// until nothing moved are counted.
     pub(super) fn of(cases: &Cases) -> Result<Self, String> {
         if let Some(reason) = cases.endings.no_losses() {
             return Err(reason);

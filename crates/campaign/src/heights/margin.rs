@@ -31,7 +31,8 @@ fn margin(
     }
     let scenario = plan::at_rest(request, direction, levels)?;
     match stability(&scenario) {
-        // A tilted floor acts like a level floor with a steady horizontal acceleration of g times the tangent of the tilt.
+        // A tilted floor acts like a level floor with a steady horizontal acceleration of g times the tangent of the
+        // tilt.
         Ok(found) => {
             Ok(found.tilt.map(|tilt| barrelstack_motion::STANDARD_GRAVITY * libm::tan(tilt)))
         }
@@ -42,7 +43,7 @@ fn margin(
 
 /// Returns the static margin (m/s²) of each stack; `None` for a stack that stands even at 1 g.
 ///
-/// Each element of `stacks` is the number of levels of a stack, and the direction in which the stack is shaken.
+/// Each element of `stacks` holds the number of levels of a stack and the direction in which the stack is shaken.
 pub(super) fn margins(
     request: &Request,
     stacks: &[(u32, Direction)],

@@ -139,8 +139,8 @@ pub(crate) fn quoted(path: &std::path::Path) -> String {
     format!("\"{text}\"")
 }
 
-/// Divides a number of synthetic motions among their kinds: a moderate earthquake nearby, which has half of them, a
-/// large earthquake further away, and motions with a velocity pulse, as occurs near faults.
+/// Divides a number of synthetic motions among their kinds: a moderate earthquake nearby, a large earthquake farther
+/// away, and motions with a velocity pulse, as occurs near faults. The first kind has at least half of the motions.
 pub(super) fn kinds(count: u32) -> [u32; 3] {
     let quarter = count / 4;
     [count - 2 * quarter, quarter, quarter]

@@ -137,8 +137,8 @@ pub(crate) fn singles(scenario: &Scenario) -> Vec<Protection> {
 
 /// Returns the lower and upper price (US$) of a device.
 ///
-/// A price per level is multiplied by the number of levels to which `changes` applies the device, or by `levels`, the
-/// number of levels of the stack, if `changes` sets none.
+/// A price per level is multiplied by the number of levels that have the device. `changes` may set this number;
+/// otherwise, it is `levels`, the number of levels of the stack.
 fn price(cost: &Cost, changes: &[String], levels: u32) -> [f64; 2] {
     let set = |change: &String| change.split_once(".levels=")?.1.parse::<u32>().ok();
     let count = match cost.each {

@@ -113,9 +113,9 @@ impl Runs {
     ///
     /// For each draw of the constants, the regression gives the share of collapses at each level. To obtain the number
     /// of fallen barrels, this share is multiplied by the mean number of barrels that fall in a collapse at that level.
-    /// If no stack collapses at that level, the mean over the collapses at all levels is used instead; if no stack
-    /// collapses at any level, `most`, the largest possible number. The number of barrels per collapse is assumed not
-    /// to depend on the constants.
+    /// If no stack collapses at that level, the mean over the collapses at all levels is used instead. If no stack
+    /// collapses at any level, the largest possible number `most` is used. The number of barrels per collapse is
+    /// assumed not to depend on the constants.
     pub(super) fn over_constants(&self, levels: &[f64], weights: &[f64], most: f64) -> Over {
         let certain =
             self.sample.is_certain().then(|| self.estimate(|run| run.collapsed, weights, 1.0));
@@ -185,7 +185,7 @@ impl Runs {
         Estimate { mean, low: scale * low, high: scale * high }
     }
 
-    /// Estimates by how much a quantity is smaller than in the runs `other`, under the same motions.
+    /// Estimates by how much a quantity is smaller in these runs than in the runs `other`, under the same motions.
     ///
     /// Returns the mean of the differences and its 95 % interval ([`mean_difference`]). The interval is widened so that
     /// it holds for `tries` comparisons simultaneously. `most` is the largest possible value of the quantity in one
@@ -235,11 +235,13 @@ pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
 
 /// Returns the indices of the candidates that continue in the next round.
 ///
-/// Candidates that are significantly worse than another candidate that costs at most as much are dropped. At most half
-/// of all candidates continue, or four if that is more: those with the smallest mean numbers of fallen barrels. The
-/// first candidate, the unprotected stack, always continues and is not counted. Each candidate is given by its runs and
-/// the midpoint of its cost range; `most` is the largest possible number of fallen barrels in one run. The tests of
-/// significance hold for all pairs of candidates simultaneously.
+/// The first candidate, the unprotected stack, always continues. Another candidate is dropped if it is significantly
+/// worse than a candidate that costs at most as much. Of the candidates other than the first, at most half (rounded up)
+/// continue, or four if that is more: those with the smallest mean numbers of fallen barrels. The tests of significance
+/// hold for all pairs of candidates simultaneously.
+///
+/// Each candidate is given by its runs and the midpoint of its cost range. `most` is the largest possible number of
+/// fallen barrels in one run.
 pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Vec<usize> {
     const LEAST: usize = 4;
     let mean = |at: usize| all[at].0.estimate(FALLEN, weights, 1.0).mean;

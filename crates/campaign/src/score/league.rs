@@ -55,8 +55,8 @@ pub fn contenders(scenario: &Scenario) -> Vec<Contender> {
     catalog::RACKS.iter().map(rack).chain(devices.map(device)).collect()
 }
 
-/// Returns the overrides that replace the rack of a stack. If the columns of the stack do not fill whole racks, the
-/// overrides also set the number of columns to the number of a single rack.
+/// Returns the overrides that replace the rack of a stack. If `columns` or `columns_along` of the stack is not a
+/// multiple of the number of barrels that a rack holds in that direction, the overrides also set it to this number.
 fn on_rack(stack: &StackSpec, rack: &crate::scenario::Rack) -> Vec<String> {
     let mut changes = vec![format!("stack.rack=\"{}\"", rack.base)];
     if !stack.columns.is_multiple_of(rack.barrels.max(1)) {
@@ -126,8 +126,8 @@ pub fn league(
     Ok(league)
 }
 
-/// Returns the first lines of the messages of an error and of its cause. Further lines give locations in a generated
-/// text, which are of no use to the reader.
+/// Returns the first line of the message of an error and, if the error has a cause, the first line of the message of
+/// the cause. Further lines give locations in a generated text, which are of no use to the reader.
 fn reason(error: &ScoreError) -> String {
     let line = |text: String| text.lines().next().unwrap_or_default().to_owned();
     let cause =

@@ -189,7 +189,7 @@ fn over_constants(sheet: &Sheet) -> Option<String> {
     ))
 }
 
-/// Formats the velocity of a capacity, such as "42 cm/s".
+/// Formats a capacity as a velocity, such as "42 cm/s", or as a range of velocities.
 fn bears(capacity: Capacity) -> String {
     match capacity {
         Capacity::Fitted(at, _) => format!("{} cm/s", shown(at)),

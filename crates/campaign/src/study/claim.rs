@@ -1,9 +1,9 @@
 //! Claims on chunks: a process keeps a file in the folder locked while it works on a chunk.
 //!
-//! The lock is an operating-system lock (`flock`), which also works on network file systems. It is released
-//! when the process ends for any reason, so that another process can take over the chunk. A suspended process
-//! (`kill -STOP`) keeps its lock; the locked file contains the name of the process. On file systems without
-//! locks, a chunk may be run twice. This does no harm, since both shards are equal.
+//! The lock is an operating-system lock (`flock`), which also works on network file systems. It is released when the
+//! process ends for any reason, so that another process can take over the chunk. A suspended process (`kill -STOP`)
+//! keeps its lock; the locked file contains the name of the process. On file systems without locks, two processes may
+//! run the same chunk. This does no harm, since both write the same rows.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write as _};

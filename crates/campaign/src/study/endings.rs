@@ -20,8 +20,8 @@ pub struct Endings {
     /// Total number of cases with a verdict.
     pub judged: u64,
     /// Number of cases that were simulated until nothing moved and the ground was still. After a collapse, or if only
-    /// the verdict is requested, calm ground is sufficient: its acceleration remains at most 0.02 g, or less if a
-    /// friction coefficient is small.
+    /// the verdict is requested, the ground need not be still. It must then be calm, with an acceleration that remains
+    /// at most 0.02 g, or less if a friction coefficient is small.
     ///
     /// Includes cases whose stack fell under its own weight, before any shaking.
     pub followed: u64,

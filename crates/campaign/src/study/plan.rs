@@ -11,7 +11,8 @@ use barrelstack_report::column::Value;
 pub struct Chunk {
     /// Number of the chunk, counted from 0.
     pub number: usize,
-    /// Number of cases; in an incremental dynamic analysis, number of hunts.
+    /// Number of cases. In an incremental dynamic analysis, this is the number of hunts; a hunt searches for the
+    /// intensity at which a stack collapses under one motion.
     pub cases: usize,
     /// Number of the first case.
     pub first: u64,

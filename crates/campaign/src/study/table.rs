@@ -31,8 +31,8 @@ impl StudyTable {
     /// Creates a table from columns of the same length.
     ///
     /// # Errors
-    /// If two columns have the same name, if their lengths differ, or if a column holds values of another
-    /// kind.
+    /// If two columns have the same name, if their lengths differ, or if the values of a column are not of the kind
+    /// that its specification states.
     pub fn new(columns: Vec<Column>) -> Result<Self, StudyError> {
         let rows = columns.first().map_or(0, |column| column.values.len());
         for (index, column) in columns.iter().enumerate() {

@@ -49,7 +49,7 @@ impl Row<'_> {
         }
     }
 
-    /// Returns a cell with the reason why there is no result; `Cell::Missing` if there is a result.
+    /// Returns a cell with the reason why there is no result; the text is empty if there is a result.
     fn reason(&self) -> Cell {
         match self {
             Self::Run(one, _) if one.counted > 0 => Cell::text(""),

@@ -5,7 +5,8 @@ use crate::space::{Linear, Space};
 
 /// Friction law of one node.
 ///
-/// The returned force has the sign of the slip; the contact loop applies the opposite force to the contactor.
+/// The force that [`FrictionLaw::force`] returns has the sign of the slip; the contact loop applies the opposite force
+/// to the contactor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FrictionLaw<R = f64> {
     /// No friction.

@@ -12,9 +12,11 @@ use crate::state::State;
 /// body. The force is
 ///
 /// ```text
-/// f = k e + c ė                          everywhere
-/// f = … + kₛ (|e| − δ) sgn e + cₛ ė      beyond the gap δ; the damper on approach only
+/// f = k e + c ė                                   within the gap δ
+/// f = k e + c ė + kₛ (|e| − δ) sgn e + cₛ ė       beyond the gap δ
 /// ```
+///
+/// The damper of a stop, cₛ, acts only while `|e|` grows.
 ///
 /// The force acts on both bodies at the point of the second body, so momentum is conserved. The guide releases the
 /// point permanently as soon as the point is farther than `reach` (m) from the axis, or the force exceeds the strength.

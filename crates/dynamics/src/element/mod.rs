@@ -1,8 +1,9 @@
 //! Force elements: forces between points of two bodies, without contact.
 //!
-//! Each kind of element has a file of its own, which defines its forces and its failure at a state ([`Load`]). This
-//! module contains the parts common to all kinds: the plastic elongation and failure kept from step to step, the
-//! contributions to the forces and to the energy balance, and the support for lanes.
+//! Each kind of element has a file of its own, which computes the force of an element at a state, and whether the
+//! element fails there ([`Load`]). This module contains the parts common to all kinds: the plastic elongation and
+//! failure kept from step to step, the contributions to the forces and to the energy balance, and the support for
+//! lanes.
 
 mod guide;
 mod link;

@@ -106,7 +106,7 @@ pub struct Scratch<S: Space> {
     /// of the body.
     pub applied: Vec<Wrench<S>>,
     /// Total force on every body, and its moment about the center of mass: the sum of contact forces, element forces
-    /// and the external force.
+    /// and external forces.
     pub wrenches: Vec<Wrench<S>>,
     /// Dissipative forces on every body.
     pub losses: Vec<Losses<S>>,

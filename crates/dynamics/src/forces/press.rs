@@ -474,8 +474,8 @@ fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vecto
 struct RollingPair<R> {
     /// Copy of [`Rolling::lever`].
     lever: R,
-    /// `√(ω² + ω₀²)` (rad/s), with the relative spin ω and the constant ω₀ ([`Rolling::spin`]): the divisor of the spin
-    /// in the rolling resistance.
+    /// Divisor of the spin in the rolling resistance (rad/s): `√(ω² + ω₀²)`, where ω is the relative spin and ω₀ is the
+    /// constant [`Rolling::spin`].
     scale: R,
 }
 

@@ -1,7 +1,7 @@
-//! Time integration: from one accepted state to the next.
+//! Time integration, which advances a model from one accepted state to the next.
 //!
 //! Every method starts with the forces of the initial state in `scratch`, and leaves the forces of the accepted state
-//! there. The displacements of the tangential springs are advanced by their rates like every other coordinate; the
+//! there. The displacements of the tangential springs are integrated from their rates, like all other coordinates; the
 //! contact history is committed only when a state is accepted.
 
 mod runge_kutta;

@@ -104,9 +104,9 @@ impl Width {
 
 /// The vector units supported on this processor architecture.
 ///
-/// A token proves that the machine has a vector unit. Bundles need the token in every operation, so the token is a
-/// constant. Code that uses the token is accessible only through the functions of this module, which first check that
-/// the machine has the unit.
+/// A token is a value that proves that the machine has a vector unit. Every operation of a bundle requires the token,
+/// so the token is a constant of the type. Code that uses the token is accessible only through the functions of this
+/// module, which first check that the machine has the unit.
 #[cfg(all(target_arch = "x86_64", feature = "vector-units"))]
 #[expect(unsafe_code, reason = "tokens as constants; every path to them checks the machine first")]
 pub(crate) mod units {

@@ -25,8 +25,7 @@ pub struct Stack<'a> {
 }
 
 /// Settles stacks of one [`Topology`](crate::lanes::Topology), as many side by side as a bundle has lanes. Returns the
-/// result of [`settle`] for each stack, in order, or `None` for stacks that were not settled before `stop` returned
-/// `true`.
+/// result of [`settle`] for each stack, in order, or `None` if `stop` returns `true` before all stacks are settled.
 ///
 /// A lane gets the next stack as soon as its current stack is at rest. The lanes share only the list of contact
 /// elements, so every stack takes the same steps as if it were settled alone. A stack that does not come to rest at the

@@ -55,8 +55,9 @@ const TRIES: [(f64, u64); 3] = [(2.0, 0), (16.0, 0), (64.0, 4000)];
 /// Number of steps between two checks for bodies that have moved out of place.
 const LOOK: u64 = 20;
 
-/// Relative error of a body's position at which its contact forces count as balanced: a few units in the last place.
-/// Where springs are very stiff in comparison with their load, no representable position balances the forces better.
+/// Relative rounding error of the position of a body: a few units in the last place. A residual force that an error of
+/// this size can cause counts as balanced, since springs that are very stiff in comparison with their load cannot be
+/// balanced better at any representable position.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Lets the bodies sink into their contacts until all forces balance.
@@ -66,9 +67,9 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 ///
 /// The method is relaxation with momentum: every step repeats a growing share of the displacement of the preceding
 /// step, and all bodies are stopped whenever the power of the forces becomes negative. If relaxation fails, it is
-/// retried with heavier masses before an error is returned. The mass of a body is the stiffness of its contacts times a
-/// factor, and velocities are too small for dampers to act, so neither damping constants nor the time step affect the
-/// equilibrium or the number of steps.
+/// retried with heavier masses before an error is returned, unless a body lacks any support ([`Lack::Support`]). The
+/// mass of a body is the stiffness of its contacts times a factor, and velocities are too small for dampers to act, so
+/// neither damping constants nor the time step affect the equilibrium or the number of steps.
 ///
 /// On return, `state` is at rest at its original time; prescribed bodies do not move.
 ///

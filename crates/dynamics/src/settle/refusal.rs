@@ -10,8 +10,8 @@ use crate::state::State;
 
 use super::gravity;
 
-/// Displacement of a body, as a fraction of its reach, at which the cause of the displacement is diagnosed: more than
-/// any body moves while it settles, but little enough that the body has not yet disturbed others.
+/// Displacement of a body, as a fraction of its reach, at which the cause of the displacement is diagnosed. No body
+/// moves so far while it settles, but a body that has moved only so far has not yet disturbed others.
 const GOING: f64 = 0.1;
 
 /// Displacement of a body, as a fraction of its reach, beyond which it counts as out of place.
@@ -24,8 +24,8 @@ const WITH_IT: f64 = 0.25;
 /// Ratio of penetration to displacement above which a body is classed as sinking.
 const SINKS: f64 = 0.5;
 
-/// Ratio above which a body is classed as tipping: the displacement of its boundary due to rotation, divided by the
-/// displacement of its center of mass. The ratio is 1 if the body rolls, or tips over its corner.
+/// Ratio above which a body is classed as tipping. The ratio is the displacement of its boundary due to rotation,
+/// divided by the displacement of its center of mass; it is 1 if the body rolls, or tips over its corner.
 const TURNS: f64 = 0.7;
 
 /// A body that does not come to rest under gravity.

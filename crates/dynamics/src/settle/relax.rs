@@ -12,7 +12,8 @@ use crate::state::State;
 
 use super::{ROUNDING, gravity};
 
-/// Displacement of a body in free fall in its first step, as a fraction of its reach.
+/// Displacement of a body in free fall in its first step, as a fraction of its reach and multiplied by
+/// [`Relaxation::margin`].
 const FIRST_FALL: f64 = 1e-4;
 
 /// Maximum displacement of a body in a step, as a fraction of its reach; limited because nonlinear contacts are soft at

@@ -44,7 +44,8 @@ impl<R: Real> Cradle<R> {
 }
 
 impl Cradle {
-    /// Creates a cradle of a radius (m) that spans `half_angle` (rad, below π) to either side of straight down.
+    /// Creates a cradle with a radius (m) that extends from the downward vertical by `half_angle` (rad, below π) to
+    /// either side.
     pub fn new(radius: f64, half_angle: f64) -> Self {
         let (sin, cos) = math::sin_cos(half_angle);
         Self { radius, sin, cos }

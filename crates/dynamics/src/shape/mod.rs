@@ -69,9 +69,9 @@ pub struct Facing<S: Space> {
     /// Maximum permitted value of `−n · limit` for each of the two limits, where `n` is the outward normal of a piece
     /// of the other surface. If either value is greater, the point cannot bear on this piece.
     pub most: f64,
-    /// Distance (m) by which a point may lie outside of the sides that the range excludes, and still count as inside
-    /// the core of the other surface. At this distance or farther outside, [`Surface::bearing`] returns the nearest
-    /// piece.
+    /// Tolerance (m) at the sides of the other surface that the range excludes. A point outside of such a side by less
+    /// than this distance can still count as inside the core. For a point farther outside, [`Surface::bearing`] returns
+    /// the nearest piece.
     pub slack: f64,
 }
 

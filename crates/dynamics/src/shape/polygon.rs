@@ -84,8 +84,9 @@ pub enum PolygonError {
     },
 }
 
-/// Distance (m) above a side, and from its ends, beyond which another side cannot be the nearest, in spite of rounding
-/// errors and of the slack by which sides are extended (a nanometer), for points up to 5 m above the side.
+/// Minimum height (m) of a point above a side, and minimum distance (m) from both ends along the side, at which this
+/// side is certainly the nearest. For points up to 5 m above the side, the value allows for rounding errors and for the
+/// nanometer by which sides are extended.
 const CLEAR: f64 = 1e-4;
 
 impl<R: Real> Polygon<R> {
@@ -148,9 +149,9 @@ impl<R: Real> Polygon<R> {
         Nearest { gap, round, to_end, toward_end, core }
     }
 
-    /// Returns the gap and the nearest piece of a point (m) that lies, in all lanes, outside of one side and clear of its
-    /// ends; `None` for any other point. The result is bit-identical to the result of the search among all sides,
-    /// since the polygon is convex.
+    /// Returns the gap and the nearest piece of a point (m) that, in all lanes, lies above one side and clear of its
+    /// ends; `None` for any other point. The result is bit-identical to the result of the search among all sides, since
+    /// the polygon is convex.
     #[inline(always)]
     fn over_one_side(&self, point: Vec2<R>) -> Option<Nearest<Planar<R>>> {
         let (zero, clear) = (R::zero(), R::splat(CLEAR));
@@ -405,7 +406,9 @@ impl Polygon {
         nodes_along(&self.pieces(), true, f64::INFINITY, CORNER_STEP)
     }
 
-    /// Divides every side into `parts` equal parts, and returns nodes at the ends of all parts.
+    /// Divides every side into `parts` equal parts, and returns nodes at the ends of all parts. For rounded corners,
+    /// the straight sides and the arcs are instead divided into parts no longer than the length of the longest side of
+    /// the core divided by `parts`.
     pub fn nodes_per_side(&self, parts: usize) -> Vec<BoundaryNode> {
         let longest = self.sides.iter().map(|side| 2.0 * side.half_length).fold(0.0, f64::max);
         if self.corner_radius > 0.0 {

@@ -20,8 +20,8 @@ pub struct BarrelProfile<R = f64> {
     pub head_radius: R,
     /// Radius at the bilge (m).
     pub bilge_radius: R,
-    /// Radius of the stave's arc (m): `((L/2)² + s²) / 2s` where `s` is the bilge radius less the head radius and `L`
-    /// the length.
+    /// Radius of the stave's arc (m): `((L/2)² + s²) / 2s`, where `s` is the bilge radius minus the head radius, and
+    /// `L` is the length between the heads.
     pub stave_radius: R,
     /// Radius of the rounded edges (m) between staves and heads.
     pub rounding: R,
@@ -29,7 +29,8 @@ pub struct BarrelProfile<R = f64> {
     pub corner_height: R,
 }
 
-/// Distance (m) from the core and from the heads beyond which rounding errors cannot change which piece is nearest.
+/// Distance (m) that a point must have from the core and from the heads to be assigned to a stave. At this distance,
+/// rounding errors cannot change which piece of the outline is nearest.
 const STAVE_MARGIN: f64 = 2e-5;
 
 /// Number of parts into which a rounded edge is divided for drawing.

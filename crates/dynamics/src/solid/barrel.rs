@@ -87,7 +87,7 @@ impl<R: Real> Barrel<R> {
     /// Returns the signed distance (m) of a point (m) from the surface, and the surface normal.
     ///
     /// Outside of the core, the nearest point of the core lies on the stave, on a head, or on the circle where they
-    /// meet. Inside, it is taken on the stave or on the head, whichever is nearer.
+    /// meet. Inside the core, the distance and the normal are those of the stave or of a head, whichever is nearer.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));

@@ -25,8 +25,8 @@ pub struct Closest {
 }
 
 /// Maximum number of evaluations of the search along an axis. Bisection alone needs 50. False position may converge
-/// more slowly than bisection, for example where the slope is constant to nine digits up to a kink. So every third
-/// evaluation bisects the interval unless the interval has halved.
+/// more slowly than bisection, for example where the slope is constant to nine digits up to a kink. Therefore, every
+/// third evaluation bisects the interval, unless the interval has halved in the last three evaluations.
 const MOST_ALONG: u32 = 180;
 
 /// Result of a search along a segment: the position, from −1 at `middle − half` to 1 at `middle + half`; the gap at
@@ -287,8 +287,9 @@ fn separation(target: &Set<'_>, contactor: &Set<'_>, normal: Vec3) -> Separation
     Separation { offset, distance: offset.dot(normal), supports }
 }
 
-/// Length of the tangential part of [`Separation::offset`] below which a normal is exact to rounding, as a fraction of
-/// the sum of the length of `offset` and the distance between the centers of the barrels.
+/// Relative length of the tangential part of [`Separation::offset`] below which the error of a normal is a rounding
+/// error. The length is divided by the sum of the length of `offset` and the distance between the centers of the
+/// barrels.
 const TANGENTIAL: f64 = 4e-15;
 /// Newton step (rad) below which a normal is exact. Near the edge of a head the support point moves much faster than
 /// the direction turns, so rounding errors affect its position long before they affect the normal.
@@ -467,8 +468,8 @@ fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f6
     best
 }
 
-/// Returns the normal, the point of the contactor's core and the distance (m), computed from the more accurate one of
-/// the two support points. A support point on a rim is inaccurate where the direction is nearly axial, since the point
+/// Returns the normal, the point of the contactor's core and the distance (m), computed from the more accurate of the
+/// two support points. A support point on a rim is inaccurate where the direction is nearly axial, since the point
 /// then moves much faster than the direction turns.
 fn polished(
     target: &Set<'_>,

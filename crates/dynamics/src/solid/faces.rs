@@ -178,8 +178,8 @@ pub(super) fn shared_by_both(
 /// corner of the polygon acts like a number of springs: the angle by which the boundary turns at the corner, divided by
 /// 90°. So the whole polygon always acts like four springs. A corner of a block on the face of the other block acts
 /// like one spring. If the blocks are rotated relative to each other about the normal, their edges can cross, and two
-/// corners of the polygon then replace one corner of a block. The result is a continuous function of the pose, since
-/// the turn of a convex boundary is continuous, and exactly flush faces need no special case.
+/// corners of the polygon then replace one corner of a block. The angles by which the boundary of a convex polygon
+/// turns change continuously with the pose, and so does the result. Exactly flush faces therefore need no special case.
 fn shared(
     contactor: &Block,
     target: &Block,

@@ -33,8 +33,9 @@ pub(super) fn smooth(u: f64) -> f64 {
     u * u * (3.0 - u - u)
 }
 
-/// Returns the weights of a patch that acts like `springs` springs and extends `length` (m) from its middle, for two
-/// solids that are inclined to each other; `sine_squared` is the squared sine of the angle between them.
+/// Returns the weights of a contact patch between two solids that are inclined to each other. The patch acts like
+/// `springs` springs and extends `length` (m) from its middle; `sine_squared` is the squared sine of the angle between
+/// the solids.
 ///
 /// The shorter the patch, the smaller the permitted angle. If a tube is inclined to a head, its deepest point is not in
 /// the part of the tube in front of the head, so the weight must decrease to zero before this part ends.
@@ -207,7 +208,8 @@ struct Line {
     length: f64,
 }
 
-/// Axial component of a contact normal below which the contact is taken to be on the stave of a barrel.
+/// Magnitude of the axial component of a contact normal below which the contact is taken to be on the staves of a
+/// barrel.
 pub(super) const MOST_ON_STAVE: f64 = 0.5;
 
 /// Returns the contact line of a tube on a head or a face of a solid, in the frame of that solid.

@@ -300,7 +300,7 @@ fn disc(x: f64, r: f64) -> [f64; 3] {
     [area, area * x * x, 0.25 * area * r * r]
 }
 
-/// Returns the integrals over a symmetric body from those over one half of it, given in the order of the fields of
+/// Returns the integrals over a symmetric body, given the integrals over one half of it in the order of the fields of
 /// [`Revolved`].
 fn doubled([volume, along, across]: [f64; 3]) -> Revolved {
     Revolved { volume: 2.0 * volume, along: 2.0 * along, across: 2.0 * across }

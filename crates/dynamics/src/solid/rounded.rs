@@ -144,8 +144,8 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
     }
 }
 
-/// Returns a contact point at which the force acts midway between the surfaces. So the result does not depend on the
-/// choice of the target.
+/// Returns a contact point at which the force acts midway between the surfaces. The result therefore does not depend on
+/// the choice of the target.
 #[inline(always)]
 fn midway<R: Real>(point: Vec3<R>, gap: Gap<Spatial<R>>) -> Touch<Spatial<R>> {
     Touch { node: point + gap.normal * (gap.distance * R::splat(0.5)), gap }

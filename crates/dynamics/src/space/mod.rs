@@ -38,7 +38,7 @@ pub trait Linear<R>:
     fn dot(self, other: Self) -> R;
 }
 
-/// Rigid motion in two or three dimensions: the types and operations on which the physics is generic.
+/// Rigid motion in two or three dimensions: the types and operations over which the physics code is generic.
 pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// `true` if bodies often consist of several solids. The relative kinematics of a body and a target surface are
     /// then reused for the next contact pair of the same body and surface.

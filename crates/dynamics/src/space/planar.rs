@@ -146,8 +146,8 @@ impl<R: Real> Space for Planar<R> {
     type Inertia = R;
     type Tangent = R;
     type TangentPlane = ();
-    /// Rows of the symmetric matrix of Candia et al. (2008, eq. 2.8), which multiplies `(ẋ, ż, θ̇)`: N·s/m in the upper
-    /// left block, N·m·s in the last entry.
+    /// Rows of the symmetric damping matrix of Candia et al. (2008, eq. 2.8), which multiplies `(ẋ, ż, θ̇)`. The units
+    /// are N·s/m in the upper left 2×2 block, N·m·s in the last diagonal entry, and N·s in all other entries.
     type Damping = [[R; 3]; 3];
     type Surface = crate::shape::Shape<R>;
     type Whole = crate::shape::NoWhole;

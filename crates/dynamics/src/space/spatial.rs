@@ -116,9 +116,10 @@ impl<R: Real> Space for Spatial<R> {
     fn momentum(inertia: Vec3<R>, rotation: Rotation3<R>, spin: Vec3<R>) -> Vec3<R> {
         rotation.apply(rotation.unapply(spin).times(inertia))
     }
-    /// Computes the spin from the momentum, followed by one step of iterative refinement: the momentum of this spin
-    /// differs from the given one by a small error, and the spin that corresponds to this error is added. Without this
-    /// step a systematic error would accumulate over a run, since a rotation matrix is orthogonal only up to rounding.
+    /// Computes the spin from the momentum, and improves it by one step of iterative refinement: the momentum of this
+    /// spin differs from the given one by a small error, and the spin that corresponds to this error is added. Without
+    /// this step a systematic error would accumulate over a run, since a rotation matrix is orthogonal only up to
+    /// rounding.
     #[inline(always)]
     fn spin_of(inertia: Vec3<R>, orientation: Quaternion<R>, momentum: Vec3<R>) -> Vec3<R> {
         let rotation = orientation.matrix();

@@ -306,7 +306,7 @@ fn owned(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
 }
 
-/// Joins words by commas, the last one by "or".
+/// Joins words with commas, and the last two words with "or".
 fn either(words: &[String]) -> String {
     match words {
         [] => String::new(),

@@ -485,7 +485,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the error about a quantity as an error about a unit: the example is a unit without a number.
+/// Converts an error about a quantity to an error about a unit, by removing the number from the example.
 fn unit_alone(error: &InputError) -> InputError {
     let mut problem = error.problem().clone();
     if let Problem::Quantity { example, .. } = &mut problem

@@ -1,5 +1,6 @@
-//! Flatfiles: tables with the magnitude, distances and site of every record, identified by the
-//! sequence numbers of NGA-West2 or by the events and stations of ESM.
+//! Flatfiles: tables with the magnitude, distances and site of every record.
+//!
+//! Records are identified by the sequence numbers of NGA-West2, or by the events and stations of ESM.
 
 use std::collections::BTreeMap;
 
@@ -54,8 +55,8 @@ impl Flatfile {
     /// event, network and station. The magnitude is Mw or, if this is unknown, EMEC Mw or ML.
     ///
     /// # Errors
-    /// If there is neither a column of sequence numbers nor the identifying columns of ESM, a
-    /// number is invalid, or a sequence number is repeated.
+    /// If the text is empty, if there is neither a column of sequence numbers nor the identifying columns of ESM, if a
+    /// number is invalid, or if a sequence number is repeated.
     pub fn parse(file: &str, text: &str) -> Result<Self, MotionError> {
         let head = text.lines().next().unwrap_or_default();
         let mark = if head.contains(';') && !head.contains(',') { ';' } else { ',' };
@@ -131,7 +132,8 @@ impl Flatfile {
     }
 
     /// Returns the row of a record, found by the event in its header and the code of its station.
-    /// Returns `None` if stations of several networks have this code.
+    ///
+    /// Returns `None` if no row has this event and this code, or if stations of several networks have this code.
     pub fn of_record(&self, record: &Record) -> Option<&FlatRow> {
         let event = record.earthquake.id.to_ascii_lowercase();
         let named = record.channels.first()?.site.station.to_ascii_lowercase();

@@ -27,8 +27,8 @@ pub(super) fn arrival(time_step: f64, a: &[f64]) -> f64 {
     time_step * split(until(first)).unwrap_or(first) as f64
 }
 
-/// Returns the sample that separates two intervals of constant variance; `None` if there are too
-/// few samples.
+/// Returns the number of samples in the first of the two intervals of constant variance that fit the samples best;
+/// `None` if there are too few samples, or if all samples are equal.
 fn split(a: &[f64]) -> Option<usize> {
     // The variance of fewer samples is meaningless.
     let margin = 10;

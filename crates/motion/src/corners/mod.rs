@@ -102,7 +102,8 @@ struct Spectra {
 /// Hz. The automatic processing of the USGS uses this rule (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
 ///
 /// # Errors
-/// If there is less than 1 s of noise or 5 s of shaking, or if the criterion is not satisfied.
+/// If there is less than 1 s of noise or 5 s of shaking, if the noise is below the resolution of the file, or if the
+/// criterion is not satisfied.
 pub fn noise_corners(
     channel: &Channel,
     arrival: f64,

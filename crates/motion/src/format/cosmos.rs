@@ -35,14 +35,16 @@ struct Header {
 }
 
 impl Header {
-    /// Returns integer `n` of the specification, counted from 1.
+    /// Returns the integer of the header that has the number `n` in the specification (counted from 1); `None` if it is
+    /// missing, marked as unknown, or too large for a code.
     fn integer(&self, n: usize) -> Option<i64> {
         let value = *self.integers.get(n - 1)?;
         #[expect(clippy::cast_possible_truncation, reason = "compared with codes only")]
         (value != self.unknown && value.abs() < 1e9).then_some(value as i64)
     }
 
-    /// Returns real `n` of the specification, counted from 1.
+    /// Returns the real number of the header that has the number `n` in the specification (counted from 1); `None` if
+    /// it is missing or marked as unknown.
     fn real(&self, n: usize) -> Option<f64> {
         self.reals.get(n - 1).copied().filter(|value| *value != self.unknown && *value != -999.0)
     }

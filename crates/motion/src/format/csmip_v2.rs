@@ -146,8 +146,8 @@ fn unit(
 }
 
 /// Returns the time step (s). The data line states the step, and real number 61 of the header may state it with more
-/// digits. Returns the number from the header if the two agree within the printed digits, else the number on the data
-/// line.
+/// digits. Returns the number from the header if the two agree within the printed digits. Otherwise, returns the number
+/// on the data line.
 fn time_step(source: &Source<'_>, first: usize, data: usize) -> Result<f64, ReadError> {
     let printed = source
         .printed_after(data, "spaced at")

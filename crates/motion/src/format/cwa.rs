@@ -1,5 +1,5 @@
-//! Reader of CWA (formerly CWB) files, Taiwan: `#` lines, then time and three components in gal,
-//! the vertical first.
+//! Reader of CWA (formerly CWB) files from Taiwan: header lines that begin with `#`, then rows with the time and the
+//! components in gal.
 //!
 //! Spec: header lines of the Taiwan Strong Motion Instrumentation Program text files;
 //! `#DataSequence` states the order of the columns.

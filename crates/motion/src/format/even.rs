@@ -126,9 +126,8 @@ pub(crate) fn even_steps(
     Ok((step, columns))
 }
 
-/// Returns the tolerance (s) for rounding errors in a time. It is the sum of 10⁻⁹ of the time since
-/// the first sample, and a few units in the last place of the number. The latter matters for times
-/// since 1970, which are large numbers.
+/// Returns the tolerance (s) for rounding errors in a time. It is 10⁻⁹ times the time since the first sample, plus a
+/// few units in the last place of `time`. The second term matters for times since 1970, which are large numbers.
 fn slack(time: f64, first: f64) -> f64 {
     1e-9 * (time - first).abs() + 4.0 * f64::EPSILON * time.abs()
 }

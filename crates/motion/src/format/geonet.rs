@@ -1,5 +1,5 @@
-//! Reader of GeoNet V1A (uncorrected) and V2A (corrected) accelerograms, New Zealand. Values are in
-//! mm/s², mm/s and mm.
+//! Reader of uncorrected (V1A) and corrected (V2A) accelerograms of GeoNet, New Zealand. Values are in mm/s², mm/s and
+//! mm.
 //!
 //! A component has 16 text lines, 10 lines of ten numbers, each 8 characters wide, then blocks of
 //! data in the same columns; V2A files include the filter pads. Spec: GeoNet, "Strong motion

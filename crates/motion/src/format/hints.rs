@@ -102,8 +102,7 @@ impl<'a> Hints<'a> {
         self.contradiction.borrow().clone()
     }
 
-    /// Formats the statement that no metadata match a channel, for the error about a missing
-    /// sensitivity.
+    /// Describes the lack of metadata for a channel, for the error about a missing sensitivity.
     pub(super) fn no_instrument(&self, seed: &SeedName, start: Option<Utc>) -> String {
         let count = self.options.instruments.len();
         if count == 0 {

@@ -48,16 +48,17 @@ pub(crate) use source::{Printed, Source, quoted, shorten, utf8};
 
 /// Information that a file may lack.
 ///
-/// A value stated in the file takes precedence; an option given in addition is ignored and
-/// reported.
+/// A value stated in the file takes precedence over an option, unless the description of the option states otherwise.
+/// Options that are given but not used are reported.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
     /// Unit of acceleration, for formats that do not state it.
     pub unit: Option<AccelerationUnit>,
     /// Time step (s), for formats that do not state it.
     pub time_step: Option<f64>,
-    /// Sensitivity in counts per m/s², for files of counts; overrides a COSMOS header. The unit is
-    /// counts per m/s or per m if [`ReadOptions::recorded`] is velocity or displacement.
+    /// Sensitivity in counts per m/s², for files of counts; overrides the sensitivity in a COSMOS header or in the
+    /// control headers of a SEED volume. The unit is counts per m/s or per m if [`ReadOptions::recorded`] is velocity
+    /// or displacement.
     pub sensitivity: Option<f64>,
     /// Metadata of individual channels. The first entry that matches a channel takes precedence over
     /// the sensitivity for all channels.
@@ -157,7 +158,7 @@ pub const FORMATS: &[Format] = &[
     columns::FORMAT,
 ];
 
-/// Description of the readable formats in the error about a file of another format. A list of all names would hide
+/// Description of the readable formats, for the error about a file in any other format. A list of all names would hide
 /// the rest of the message.
 const KNOWN_FORMATS: &str = "a strong-motion record in a known format, such as PEER AT2, COSMOS, CSMIP, K-NET, ESM, \
                              SAC, SEED, or plain columns of numbers";

@@ -12,9 +12,9 @@ use crate::record::Record;
 
 /// Largest size of an unpacked file (bytes), so that a small archive cannot exhaust the memory.
 ///
-/// The worst case is a text file with one digit per line, which needs sixteen times its size in memory
-/// while it is read: 192 MB for a file of this size, and 1 GB for a file of 64 MB. For comparison,
-/// an hour of one component at 100 Hz, written as text, is a quarter as large.
+/// The worst case is a text file with one digit per line, which needs sixteen times its size in memory while it is
+/// read: 192 MB for a file of this size, and 1 GB for a file of 64 MB. An hour of one component at 100 Hz, written as
+/// text, takes about a quarter of this size.
 pub(crate) const LARGEST: u64 = 12 << 20;
 
 /// Reads the record in a packed file; `None` if the file is not packed.

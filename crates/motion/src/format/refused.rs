@@ -34,8 +34,8 @@ pub(crate) const XML: Format = Format {
     read: xml,
 };
 
-/// Blocks of acceleration, velocity and displacement published by the USGS around 1987. A reader
-/// could not be tested, because no sample may be redistributed.
+/// Blocks of acceleration, velocity and displacement published by the USGS around 1987. There is no reader for this
+/// format, because no sample with which a reader could be tested may be redistributed.
 pub(crate) const USGS_BLOCKS: Format = Format {
     name: "usgs-1987",
     title: "USGS blocks of 1987 (refused)",

@@ -464,7 +464,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Returns all numbers of the lines `from..to`, split at blanks.
+    /// Returns all numbers of the lines `from..to`, separated as described at [`Source::tokens`].
     pub(crate) fn all_tokens(
         &self,
         from: usize,

@@ -26,10 +26,9 @@
 //! Unknown values are omitted. `# initial_velocity:` (m/s, one per channel) is written if any of
 //! these velocities is not zero.
 //!
-//! In `# channels:`, `az=` is the azimuth (degrees clockwise from north); `vertical` means positive
-//! upward; `horizontal` is a horizontal direction of unknown azimuth; a name alone has an unknown
-//! direction. `# source:`, `# attribution:` and `# licence:` are kept; other `#` lines are
-//! comments.
+//! In `# channels:`, `az=` is the azimuth (degrees clockwise from north); `vertical` means positive upward;
+//! `horizontal` is a horizontal direction of unknown azimuth; a name alone means that the direction is unknown.
+//! `# source:`, `# attribution:` and `# licence:` are kept; other `#` lines are comments.
 
 use std::fmt::Write as _;
 

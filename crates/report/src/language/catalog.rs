@@ -8,8 +8,8 @@ pub(super) struct Catalog {
     /// the placeholders themselves.
     entries: HashMap<&'static str, &'static str>,
     templates: Vec<Template>,
-    /// For each word, the indices of the templates of which it is the rarest word. These templates match only texts
-    /// that contain the word.
+    /// Indices of the templates, grouped by the rarest word of each template. A template matches only texts that
+    /// contain this word.
     by_word: HashMap<&'static str, Vec<usize>>,
     /// Indices of all templates that are not in `by_word`, because every word in them touches a placeholder.
     wordless: Vec<usize>,

@@ -8,7 +8,7 @@ pub(super) fn log_log(x: f64, (x0, y0): (f64, f64), (x1, y1): (f64, f64)) -> f64
     y0 * math::powf(y1 / y0, math::ln(x / x0) / math::ln(x1 / x0))
 }
 
-/// Returns the design spectrum of ASCE 7-16, section 11.4.6 (g).
+/// Returns the acceleration (g) of the design spectrum of ASCE 7-16, section 11.4.6, at the period `t` (s).
 pub(super) fn asce7(sds: f64, sd1: f64, long_period: f64, damping: f64, t: f64) -> f64 {
     // Table 17.5-1, interpolated linearly.
     let damped = math::interpolate(
@@ -30,8 +30,8 @@ pub(super) fn asce7(sds: f64, sd1: f64, long_period: f64, damping: f64, t: f64) 
     }
 }
 
-/// Returns the elastic spectrum of EN 1998-1:2004, section 3.2.2.2, relative to the ground
-/// acceleration on rock.
+/// Returns the acceleration of the elastic spectrum of EN 1998-1:2004, section 3.2.2.2, at the period `t` (s), divided
+/// by the ground acceleration on rock.
 pub(super) fn eurocode8(site: SiteClass, small_magnitude: bool, damping: f64, t: f64) -> f64 {
     // Soil factor and corner periods, tables 3.2 and 3.3.
     let (s, tb, tc, td) = match (small_magnitude, site) {
@@ -59,7 +59,8 @@ pub(super) fn eurocode8(site: SiteClass, small_magnitude: bool, damping: f64, t:
     }
 }
 
-/// Returns the elastic spectrum of decree 61 of 2011, articles 11 to 13 (g).
+/// Returns the acceleration (g) of the elastic spectrum of the Chilean decree 61 of 2011, articles 11 to 13, at the
+/// period `t` (s).
 pub(super) fn nch433(zone: ChileanZone, site: SiteClass, t: f64) -> f64 {
     let a0 = match zone {
         ChileanZone::One => 0.2,
@@ -77,7 +78,8 @@ pub(super) fn nch433(zone: ChileanZone, site: SiteClass, t: f64) -> f64 {
     s * a0 * (1.0 + 4.5 * math::powf(x, p)) / (1.0 + x * x * x)
 }
 
-/// Returns the base spectrum of `NCh2745.Of2003`, figure 1 and its table, divided by `B_D` (m/s²).
+/// Returns the acceleration (m/s²) of the base spectrum of `NCh2745.Of2003`, figure 1 and its table, at the period `t`
+/// (s). It is divided by the damping factor `B_D`.
 pub(super) fn nch2745(zone: ChileanZone, soil: NCh2745Soil, damping: f64, t: f64) -> f64 {
     let factor = match zone {
         ChileanZone::One => 0.75,
@@ -113,7 +115,7 @@ pub(super) fn nch2745(zone: ChileanZone, soil: NCh2745Soil, damping: f64, t: f64
     0.01 * factor * base / damped
 }
 
-/// Returns the spectrum of NZS 1170.5:2004, section 3.1.1 (g).
+/// Returns the acceleration (g) of the elastic spectrum of NZS 1170.5:2004, section 3.1.1, at the period `t` (s).
 pub(super) fn nzs1170(
     hazard: f64,
     return_period: f64,

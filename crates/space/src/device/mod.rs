@@ -84,8 +84,8 @@ impl Builder<'_> {
         (0..self.parts.len()).filter(on).collect()
     }
 
-    /// Returns the names and positions of four points: left and right at `±across` (m), and near and far at `±along`
-    /// (m).
+    /// Returns the names and positions of four points: "left" and "right" at `x = ±across` (m), and "near" and "away"
+    /// at `y = ±along` (m).
     ///
     /// In a mirrored stack the right point comes before the left point, so that the forces at the points are summed in
     /// mirrored order, too.

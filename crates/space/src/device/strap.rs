@@ -14,7 +14,8 @@ use barrelstack_dynamics::{BodyId, Link, Vec3};
 use super::Loose;
 use crate::builder::Builder;
 
-/// Installs the straps, body by body from the ground up; for each body, the strap on the left comes first.
+/// Installs the straps, body by body from the ground up; for each body, the strap on the left comes first, or the strap
+/// on the right if the stack is mirrored.
 pub(super) fn place(device: &Straps, builder: &mut Builder<'_>) -> Result<(), AssembleError> {
     if !device.is_on() {
         return Ok(());

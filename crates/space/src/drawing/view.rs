@@ -9,7 +9,7 @@ use barrelstack_report::{Point, Polyline, Role, SceneBody};
 
 use crate::part::Part;
 
-/// View direction of a body, rounded to fixed angular steps.
+/// View of a body in a drawing. Its direction is rounded, so that one drawing serves for similar directions.
 pub(super) struct BodyView {
     /// Axes, in the body frame, that point right and up in the drawing.
     axes: [Vec3; 2],
@@ -20,7 +20,9 @@ pub(super) struct BodyView {
 
 impl BodyView {
     /// Creates the view of a body. `page` holds the axes of the page that point right and up, in the body frame. The
-    /// view direction is rounded to `steps` steps per right angle.
+    /// view direction is rounded: for a barrel, its angle to the cross-section is rounded to multiples of a right angle
+    /// divided by `steps`; for any other body, its components in the body frame are rounded to multiples of the
+    /// reciprocal of `steps`.
     pub(super) fn of(kind: PartKind, page: [Vec3; 2], steps: f64) -> Self {
         let toward = page[0].cross(page[1]);
         let axis = Vec3::new(1.0, 0.0, 0.0);

@@ -18,7 +18,8 @@ use super::longitudinal::has_rows;
 use crate::scenario::{Basis, Cradle, Friction, Interface, RackKind, SeatContact, StackPair};
 use crate::scenario::{StackSpec, View};
 
-/// Number of rails of a rack that coincide in the planar model across the barrels. Its posts also coincide in pairs.
+/// Number of rails of a rack that coincide in the planar model across the barrels. The posts of the rack also coincide
+/// in pairs.
 const RAILS: f64 = 2.0;
 
 /// The kind of model that represents a stack.

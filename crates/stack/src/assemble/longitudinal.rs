@@ -19,8 +19,8 @@ use crate::scenario::{Basis, Posts, Rack, RackKind, SeatContact, StackSpec};
 /// Radius (m) to which the chime of a barrel is rounded. The value is an assumption.
 pub const CHIME_RADIUS: f64 = 0.01;
 
-/// Cosine of the largest angle (73°) between contact normal and face normal at which the nodes of a rail's face carry
-/// the contact.
+/// Cosine of an angle (73°). The nodes on a face of a rail carry a contact only if the angle between the normal of the
+/// contact and the normal of the face is at most this angle.
 ///
 /// Contacts at larger angles, such as those of the chime of a barrel that has slid off, are found without the nodes.
 /// Cosines from 0 to 0.7 were compared on seven stacks, including the worst known cases; this cosine gave the smallest

@@ -22,10 +22,10 @@ use super::{AssembleError, PartKind, posts};
 use crate::device::Chocks;
 use crate::scenario::{Cradle, Friction, Rack, RackKind, SeatContact};
 
-/// Half the thickness (m) of the bars of a cradle, whose ends are round: an assumption.
+/// Assumed half thickness (m) of the bars of a cradle, and radius of their round ends.
 pub const BAR_RADIUS: f64 = 0.015;
 
-/// Corner radius (m) of tubes: an assumption.
+/// Assumed corner radius (m) of tubes.
 ///
 /// Twice this radius exceeds the stroke of a seat, which is the penetration beyond which the impact law also acts. The
 /// cores of two tubes (the parts inside the rounding) therefore never touch.
@@ -62,12 +62,12 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
     Ok((height, reach(rack, radius, &spec.interfaces.barrel_rack.friction)))
 }
 
-/// Returns the displacement (m) of a rack, across the barrels below, beyond which the rack is no longer supported.
+/// Returns the displacement (m) of a rack, relative to the level below, beyond which the rack is no longer supported.
 ///
 /// A rack with feet is supported until its feet stand beside the crowns and its beam rests on the curved side of a
 /// barrel. A rack without feet is supported until the end of its beam has passed the crown and has reached the point
 /// where the surface of the barrel descends at an angle of arctan μ, the steepest slope on which friction holds the
-/// beam.
+/// beam. For a rack on posts, the result is that of `posts::reach`.
 fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
         return posts::reach(rack, posts.half_spacing);
@@ -274,5 +274,5 @@ fn chocks(
     Ok(solids)
 }
 
-/// Length (m) of the straight bars that form a trough.
+/// Maximum arc length (m) of the part of a trough that one straight bar forms.
 const TROUGH_BAR: f64 = 0.04;

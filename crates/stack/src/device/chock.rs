@@ -1,4 +1,4 @@
-//! Chocks: horns beside the barrels, higher than the cradle, that keep the barrels from rolling out.
+//! Chocks beside the barrels, higher than the cradle, that keep the barrels from rolling out.
 //!
 //! A barrel that leans on a support at an angle φ from the vertical through its center rolls over the support at a
 //! lateral acceleration above g tan φ. For a barrel with mass m and radius r, the energy barrier is m g r (1 − cos φ).

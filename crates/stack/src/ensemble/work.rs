@@ -106,7 +106,8 @@ impl Stage {
         Self { shaking: false }
     }
 
-    /// Counts the stacks of `cases` cases as brought to rest, and counts the time from now on as shaking.
+    /// Adds `cases` to the number of cases whose stack has been brought to rest, and counts the time from now on as
+    /// shaking.
     ///
     /// Only the first call has an effect.
     pub fn shake(&mut self, cases: usize) {

@@ -56,7 +56,8 @@ pub enum RunFailure {
 }
 
 impl RunFailure {
-    /// Returns the fields of the scenario that the error concerns, the most likely first.
+    /// Returns the fields of the scenario that the error concerns. The field that most likely has to be changed comes
+    /// first.
     pub fn fields(&self) -> Vec<String> {
         let of = |fields: &[&str]| fields.iter().map(|field| (*field).to_owned()).collect();
         match self {

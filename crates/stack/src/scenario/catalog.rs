@@ -1,6 +1,7 @@
 //! Catalog of barrels and racks, with the source of every number.
 //!
-//! Values without a source are marked as assumptions: measure and override them.
+//! Values without a source are marked as assumptions. Users should measure these values, and override them in the
+//! scenario.
 
 use std::f64::consts::PI;
 
@@ -116,8 +117,9 @@ pub struct Seat {
 /// stiffer against tangential forces, which load them in their plane.
 const STICK_ON_BARREL: f64 = 2.0;
 
-/// Ratio of the tangential to the normal stiffness of seats on the floor. Tubes do not lie flat on a floor, so normal
-/// forces bend them. Tangential forces act where steel is in contact with the floor, which is far stiffer.
+/// Ratio of the tangential to the normal stiffness of seats on the floor. Tubes do not lie flat on a floor, so a normal
+/// force first bends them. A tangential force acts where steel already touches the floor, and there the contact is far
+/// stiffer.
 ///
 /// Four is the largest ratio that does not require a smaller time step. When slip changes direction, the friction force
 /// reverses gradually, while the tangential spring is displaced. With a ratio of four, this displacement is so small

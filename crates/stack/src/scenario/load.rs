@@ -277,7 +277,7 @@ fn read(
 
 /// Returns the title that the user wrote, with the stack and the motion to which the title applies. The stack and the
 /// motion are read from the given table, to which no override has been applied. Returns `None` if the file has no
-/// title, or the title of a built-in scenario.
+/// title, or if its title is the title of a built-in scenario.
 fn own_title(sources: &Sources, table: &Table) -> Option<Own> {
     let node = &table.get("title")?.node;
     let Value::Text(title) = &node.value else { return None };
@@ -290,7 +290,8 @@ fn own_title(sources: &Sources, table: &Table) -> Option<Own> {
     Own::of(title, stated.as_ref().map(|(scenario, _)| scenario))
 }
 
-/// Reads the scenario from a table, and returns it with warnings about former keys in the table, which are renewed.
+/// Replaces former keys in a table by current keys, and reads the scenario from the table. Returns the scenario with a
+/// warning for each former key.
 fn resolved(
     sources: &Sources,
     table: &mut Table,

@@ -21,9 +21,9 @@ const HEAVY: f64 = 1.2e9;
 /// on a rack, several contacts of the rack share the load.
 const LIGHT: f64 = 5e8;
 
-/// Declares the pairs. Each entry consists of the enum variant, the struct field and the name in scenario files; after
-/// `=` follow the definition of the table of the contact law, the impact stiffness, the default friction coefficient
-/// and the source of that coefficient.
+/// Declares the pairs. Each entry has the enum variant, the struct field and the name in scenario files before `=`.
+/// After `=`, it has the definition of the table of the contact law, the impact stiffness, the default friction
+/// coefficient, and the source of that coefficient.
 macro_rules! pairs {
     ($(
         $(#[doc = $help:literal])+

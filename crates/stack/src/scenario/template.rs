@@ -183,8 +183,8 @@ impl Host {
         Reader::open(&self.sources, section, String::new(), Some(&self.table), Origin::Whole(0))
     }
 
-    /// Returns a title that was read from the file; if overrides changed what it describes, or if it belongs to an
-    /// extended file, ", changed" is appended.
+    /// Returns a title that was read from the file. Appends ", changed" if overrides changed the content that the title
+    /// describes, or if the title comes from an extended file.
     pub fn titled(&self, title: &str) -> String {
         if load::title_applies(&self.sources, &self.table) {
             title.to_owned()

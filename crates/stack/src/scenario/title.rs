@@ -15,7 +15,7 @@ const WORDS: [&str; 13] = [
 /// Suffix of the title of a changed scenario, used if the rest of the title does not show the change.
 pub(super) const CHANGED: &str = ", changed";
 
-/// Returns a title without the words that state that something was changed.
+/// Returns a title with the suffix `, changed` removed, if present.
 pub fn without_changed(title: &str) -> &str {
     title.strip_suffix(CHANGED).unwrap_or(title)
 }
@@ -60,8 +60,9 @@ impl Own {
         Some(Self { title: title.to_owned(), stated: Some(words) })
     }
 
-    /// Returns the title, followed by those of the given words (for the stack and for the motion) that neither apply
-    /// to the stated scenario nor occur in the title.
+    /// Appends words for the stack and for the motion to the title. Words are left out if they also apply to the stated
+    /// scenario or already occur in the title. If all words also apply to the stated scenario, [`CHANGED`] is appended
+    /// instead.
     fn with(&self, stands: &str, shakes: &str) -> String {
         let known = |of: fn(&(String, String)) -> &String| self.stated.as_ref().map(of);
         let mut changed = Vec::new();

@@ -301,8 +301,7 @@ impl<R: Real> Joints<R> {
 
     /// Returns the index of the joint of two bodies that touch, and `true` if the first body is the upper one.
     ///
-    /// Adds the joint if it does not exist yet. If only bodies are observed of which one supports the other by design,
-    /// returns `None` instead.
+    /// If there is no such joint, adds it if all bodies that touch are observed, and returns `None` otherwise.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn meet(&mut self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {

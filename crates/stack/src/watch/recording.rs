@@ -45,8 +45,8 @@ impl Frames {
     }
 }
 
-/// History of the force between two bodies of a stack, one of which supports the other by design, or which have
-/// touched.
+/// History of the force between two bodies of a stack. One of the bodies supports the other by design, or the two have
+/// touched during the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointForces {
     /// The bodies, with the force at rest and the largest forces in any step.
@@ -86,7 +86,8 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Returns the forces between all bodies that have touched, at rest and at their maximum.
+    /// Returns the observer of the forces between bodies, which holds the current force, the force at rest and the
+    /// largest forces of each pair of bodies.
     pub fn forces(&self) -> &Joints {
         &self.forces
     }

@@ -23,8 +23,8 @@ pub const HOLD: f64 = 3.0;
 
 /// Largest acceleration at which the ground may count as calm, as a fraction of gravity.
 ///
-/// Such an acceleration is too small to make bodies slide or tip, and the last third of many records is weaker. Unless
-/// only the verdict is requested, a standing stack is nevertheless simulated to the end of the motion, since its
+/// Such an acceleration is too small to make bodies slide or tip. Many records stay below it in their last third.
+/// Unless only the verdict is requested, a standing stack is nevertheless simulated to the end of the motion, since its
 /// displacements are results.
 const CALM: f64 = 0.02;
 /// Largest acceleration at which the ground may count as calm, as a fraction of gravity, divided by the smallest

@@ -117,8 +117,8 @@ impl FieldCases {
         cases.fold((0, 0), |(falls, all), case| (falls + u32::from(case.falls), all + 1))
     }
 
-    /// Returns the mean share of fallen barrels in the stacks of this height that fell. If no stack of this height
-    /// fell, returns the mean over the fallen stacks of all heights; if no stack fell at all, returns 0.
+    /// Returns the mean share of fallen barrels in the stacks with this number of levels that fell. If no such stack
+    /// fell, returns the mean over all stacks that fell. If no stack fell at all, returns 0.
     pub fn fallen(&self, levels: usize) -> f64 {
         let mean = |cases: &mut dyn Iterator<Item = &FieldCase>| {
             let (mut sum, mut count) = (0.0, 0.0);

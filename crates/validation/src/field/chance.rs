@@ -8,8 +8,8 @@ use super::cases::{FieldCase, FieldCases, UNKNOWNS};
 /// and factor on the motion.
 pub const MEDIANS: [f64; UNKNOWNS] = [0.30, 0.50, 3.0, 1.0];
 
-/// Scales of ln(u/m), where u is an unknown and m is its median ([`MEDIANS`]). The polynomial contains ln(u/m) divided
-/// by twice its scale.
+/// Scales of ln(u/m), where u is an unknown and m is its median ([`MEDIANS`]). In the regression, ln(u/m) is divided by
+/// twice the scale of the unknown.
 const UNITS: [f64; UNKNOWNS] = [0.35, 0.2, 0.6, 0.25];
 
 /// Standard deviations of the normal priors of the coefficients: constant, linear, and all others.
@@ -195,8 +195,8 @@ impl Chance {
         Self { coefficients, draws }
     }
 
-    /// Returns the probability that a stack falls. The coefficients are those of a draw (`draw` modulo the number of
-    /// draws) or, if `draw` is `None`, those that maximize the posterior density.
+    /// Returns the probability that a stack falls. If `draw` is a number, the coefficients come from the draw with this
+    /// index, modulo the number of draws. If `draw` is `None`, the coefficients maximize the posterior density.
     pub fn of(&self, levels: usize, point: &Point, in_space: bool, draw: Option<usize>) -> f64 {
         let mut row = features(levels, point);
         if !in_space {

@@ -42,8 +42,8 @@ impl<'a> Fitted<'a> {
         }
     }
 
-    /// Returns the probability that a stack falls. The coefficients are those of a draw or, if `draw` is `None`, those
-    /// that maximize the posterior density.
+    /// Returns the probability that a stack falls, with the coefficients of the fit in a draw. If `draw` is `None`,
+    /// uses the coefficients that maximize the posterior density.
     pub(super) fn share(&self, levels: usize, point: &Point, draw: Option<usize>) -> f64 {
         self.chance.of(levels, point, self.in_space, draw)
     }

@@ -201,8 +201,8 @@ fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     Ok(fallen)
 }
 
-/// Runs the stack that is most similar to the scene among those that a scenario can describe. Returns the time (s) at
-/// which the first barrel falls; `None` if no barrel falls.
+/// Runs the stack that is most similar to the scene and can be described by a scenario. Returns the time (s) at which
+/// the first barrel falls; `None` if no barrel falls.
 fn scenario(degrees: f64, end: f64) -> Result<Option<f64>, Failure> {
     let text = format!(
         r#"

@@ -24,8 +24,8 @@ fn fitted(stripes: &[Stripe]) -> Result<Fit, Failure> {
     fit(&evidence(stripes), Dispersion::Free).map_err(absent)
 }
 
-/// Creates the problem that compares one result of the fit to the eight stripes with the published number. The
-/// tolerance is half a unit of the last published digit.
+/// Creates the problem of one number that follows from a fit to the eight stripes. The exact answer is the published
+/// number, and the tolerance is half a unit of its last digit.
 fn number(
     id: &str,
     quantity: &'static str,
@@ -42,8 +42,8 @@ const TRUTH: Lognormal = Lognormal { median: 0.45, dispersion: 0.45 };
 const LEVELS: [f64; 7] = [0.15, 0.25, 0.35, 0.45, 0.6, 0.8, 1.0];
 const AT: [f64; 5] = [0.2, 0.3, 0.45, 0.6, 0.9];
 
-/// Returns the share of confidence bands that contain the true curve; each band is fitted to a campaign of seven
-/// stripes of thirty cases.
+/// Returns the share of confidence bands that contain the true curve at an intensity, averaged over five intensities.
+/// Each band is fitted to a campaign of seven stripes of thirty cases.
 fn coverage(
     effort: Effort,
     band: fn(&[Stripe], &mut Random) -> Result<Vec<Interval>, Failure>,

@@ -20,8 +20,8 @@ pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {
     }
 }
 
-/// Creates a slender block for closed forms that assume small angles. The contact is so stiff that the penetration
-/// stays small.
+/// Creates a slender block, for comparison with closed-form solutions that assume small angles. The contact is so stiff
+/// that the penetration stays small.
 pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
     let stiffer = if effort == Effort::Full { 5.0 } else { 4.0 };
     RockingBlock {

@@ -17,7 +17,8 @@ const SOURCE: &str = "Peña, Prieto, Lourenço et al. 2007, blocks S1 to S3";
 /// Name, width (m) and height (m) of each block, and the measured ratio of its angular velocities after and before an
 /// impact.
 ///
-/// The ratio of S3, 0.978, is left out: it lies below Housner's 0.9787, the minimum for any damping.
+/// The measured ratio of S3, 0.978, is left out, because no damping of the contact can give it: the smallest possible
+/// ratio is Housner's, 0.9787.
 const BLOCKS: [(&str, f64, f64, Option<f64>); 3] =
     [("s1", 0.25, 1.000, Some(0.936)), ("s2", 0.17, 1.000, Some(0.973)), ("s3", 0.12, 1.000, None)];
 

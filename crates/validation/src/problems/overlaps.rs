@@ -1,4 +1,4 @@
-//! Check that bodies do not overlap while stacks collapse, frame by frame.
+//! Checks frame by frame that bodies do not overlap while stacks collapse.
 
 use std::path::{Path, PathBuf};
 
@@ -97,8 +97,8 @@ impl Survey {
     }
 }
 
-/// Returns the paths of those records of horizontal motion that must not be distributed with the program but are
-/// present in a folder next to the working copy.
+/// Returns the paths of additional records of horizontal motion. These must not be distributed with the program, so
+/// only the files that exist in a folder next to the working copy are returned.
 fn records() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
     [

@@ -49,8 +49,8 @@ impl Form {
     }
 }
 
-/// Names of the published boundaries, in the order of increasing pulse strength: overturning starts, the block is safe
-/// again, the block overturns without an impact.
+/// Names of the published boundaries, in the order of increasing pulse strength. Beyond the first boundary, the block
+/// overturns after an impact. Beyond the second, it is safe. Beyond the third, it overturns without an impact.
 const BORDERS: [&str; 3] = ["starts", "safe-again", "without-impact"];
 
 /// Returns the problems of this module.

@@ -120,7 +120,7 @@ fn first_spin(s: f64, beta: f64) -> Problem {
     })
 }
 
-/// Simulates a block that is too flat to rock on moving ground, and returns the scene at the time `end` (s).
+/// Simulates, on moving ground, a block that is too flat to rock. Returns the scene at the time `end` (s).
 ///
 /// # Errors
 /// If the run fails numerically.

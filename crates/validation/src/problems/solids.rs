@@ -222,8 +222,9 @@ fn flat(share: f64, count: f64) -> Problem {
 
 /// Creates the problem of the smoothness of forces while one box moves over the flats, edges and corners of another.
 ///
-/// The quantity is computed from the change of force between neighboring points of a fine path, divided by the contact
-/// stiffness and by the step between the points. It is the amount by which the largest such ratio exceeds 4, or 0.
+/// For neighboring points of a fine path, the change of force is divided by the contact stiffness and by the step
+/// between the points. The quantity is the amount by which the largest such ratio exceeds 4; it is 0 if no ratio
+/// exceeds 4.
 fn smooth() -> Problem {
     setting(
         "solids/smooth-along-paths",

@@ -2,11 +2,12 @@
 //!
 //! The search does not depend on how variants are run, so whole searches can be simulated in tests.
 //!
-//! Variants are run in blocks, the variants that are most likely to fall first: variants that fell with most of the
-//! changes of the same kind tried before, then variants that fell earliest without a change.
-//! A change is rejected after the first block with which its failures exceed the number that is admissible among all
-//! variants. The order therefore does not affect which changes suffice, but only the number of runs until a change is
-//! rejected. The failure share of a rejected change is unknown, since the counted variants are a biased sample.
+//! Variants are run in blocks. The variants that are most likely to fall come first: they are sorted by the number of
+//! times that they fell with earlier changes of the same kind, the largest number first. Where these numbers are equal,
+//! the variants that fell earliest without a change come first. A change is rejected after the first block with which
+//! its failures exceed the number that is admissible among all variants. The order therefore does not affect which
+//! changes suffice, but only the number of runs until a change is rejected. The failure share of a rejected change is
+//! unknown, since the counted variants are a biased sample.
 //!
 //! If looser straps suffice, a pretension that was not rejected after its first block is not run further; it is then
 //! unknown whether this pretension suffices. If all variants of a change were counted, its failure share has a
@@ -456,7 +457,7 @@ mod tests {
         assert_eq!(verdicts, expected);
     }
 
-    /// The first block can reject a change, even if fewer variants would fill the cores.
+    /// The first block has enough variants to reject a change, even if the plan states a smaller first block.
     #[test]
     fn the_first_block_is_large_enough_to_reject_a_change() {
         for (variants, admissible) in [(16, 0), (19, 0), (20, 1), (64, 3), (1000, 50)] {

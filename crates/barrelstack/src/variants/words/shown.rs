@@ -1,4 +1,4 @@
-//! Sentence on the run that a page shows, with its outcome beside those of all variants.
+//! Sentence that names the run shown on a page, and compares its outcome with the outcomes of all variants.
 
 use super::{View, all_of};
 use crate::variants::Spread;
@@ -13,8 +13,9 @@ pub struct ShownOutcome<'a> {
     pub spread: &'a Spread,
 }
 
-/// States which run is shown, and its outcome beside those of all variants: "The run that is shown is that of variant
-/// 15, the most typical of all runs: the stack stands, while 12 of 64 variants fall.". Empty without variants.
+/// Returns a sentence that names the shown run and compares its outcome with the outcomes of all variants, such as "The
+/// run that is shown is that of variant 15, the most typical of all runs: the stack stands, while 12 of 64 variants
+/// fall.". The sentence is empty if `outcomes` is empty.
 pub fn shown_run(number: u32, outcomes: &[ShownOutcome<'_>]) -> String {
     let Some(first) = outcomes.first() else { return String::new() };
     let run = match number {

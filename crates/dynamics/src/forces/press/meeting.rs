@@ -19,8 +19,8 @@ pub(crate) struct PairKinematics<S: Space> {
 
 /// The bodies of a contact pair.
 ///
-/// A struct, since its fields are compared one by one. The comparison of an array would wait until all stores before it
-/// have reached the cache, which takes as long as hundreds of operations.
+/// The indices are stored in a struct, because the fields of a struct are compared one by one. The comparison of two
+/// arrays would wait until all preceding stores have reached the cache, which takes as long as hundreds of operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Between {
     contactor: usize,

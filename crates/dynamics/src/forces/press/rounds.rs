@@ -29,8 +29,9 @@ const NEARLY_INSIDE: f64 = 1e-5;
 /// lie outside the limits of a piece by this angle.
 const LIMIT: f64 = 2e-7;
 
-/// Returns `true` if no round piece of a group can touch a surface: the contactor leads in no lane, and an arc of the
-/// surface is nearest to every piece, so that every contact belongs to the pair with exchanged bodies.
+/// Returns `true` if it is certain that every contact between the round pieces of a group and a surface belongs to the
+/// pair with exchanged bodies: the contactor [leads](Press::leads) in no lane, and each piece can only touch an arc of
+/// the surface.
 #[inline(always)]
 pub(super) fn belongs_to_others<S: Space>(
     leads: <S::Real as Real>::Mask,

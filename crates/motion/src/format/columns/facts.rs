@@ -213,7 +213,7 @@ fn plain_letter(c: char) -> Option<char> {
     })
 }
 
-/// Returns the length (s) of a unit of time.
+/// Returns the length (s) of a unit of time; `None` if the text is not such a unit.
 pub(super) fn time_factor(text: &str) -> Option<f64> {
     Some(match text.trim().to_lowercase().trim_end_matches(['.', ',']) {
         "s" | "sec" | "secs" | "second" | "seconds" | "seg" | "sn" | "sek" => 1.0,
@@ -475,7 +475,7 @@ fn component(text: &str) -> Option<String> {
     })
 }
 
-/// Refuses a header that describes the numbers as quantities other than accelerations.
+/// Returns an error if the header lines describe the numbers as quantities other than accelerations.
 pub(super) fn refuse_other_quantities(
     source: &Source<'_>,
     lines: impl Iterator<Item = usize> + Clone,

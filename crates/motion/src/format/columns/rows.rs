@@ -164,8 +164,8 @@ fn tokens(source: &Source<'_>, line: usize, row: &mut Vec<f64>) -> Result<(), Re
     Ok(())
 }
 
-/// Returns the error for a row with a different number of values. The remedy depends on whether the
-/// first line is the one that differs, and on whether a cell is empty.
+/// Returns the error for a row whose number of values differs from the width of the table. The remedy depends on
+/// whether the first row may be the one that does not belong to the table, and on whether a cell is empty.
 fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: usize) -> ReadError {
     let text = source.text(line);
     let at_end = found < width && text.ends_with([',', ';']);

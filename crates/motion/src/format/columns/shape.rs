@@ -95,9 +95,11 @@ pub(super) enum Commas {
     Both,
 }
 
-/// Determines the meaning of commas in a table. Commas are decimal commas if no number has a
-/// decimal point and another separator stands between the numbers, or if digits after commas begin
-/// with zeros.
+/// Determines the meaning of commas in the first [`ROWS`] rows of a table.
+///
+/// If a row has a decimal point, a comma before a space or a comma at its end, commas are separators. Otherwise, commas
+/// are decimal commas if no field has several commas, and if either every row has several fields or the digits after
+/// some comma are a zero and more digits. Fields are separated by semicolons, tabs or spaces.
 pub(super) fn commas(source: &Source<'_>, first: usize, end: usize) -> Commas {
     let (mut any, mut zeros, mut one_each, mut other) = (false, false, true, true);
     for line in first..end.min(first + ROWS) {

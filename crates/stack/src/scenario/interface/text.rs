@@ -109,8 +109,8 @@ pub(in crate::scenario) fn read(
     Ok(Interface { basis, normal, friction })
 }
 
-/// Dimension of the damping coefficient of a normal law, and the name and dimension of the field for the reference mass
-/// or speed at which a coefficient of restitution holds.
+/// Dimension of the damping coefficient of a normal law, followed by the name and the dimension of another field. This
+/// field states the mass or speed for which a coefficient of restitution holds.
 type DampingUnits = (Dimension, &'static str, Dimension);
 
 const HUNT_CROSSLEY: DampingUnits =

@@ -14,8 +14,9 @@ use super::places::{on_nodes, on_surface};
 use super::{BoundaryPoint, Cells, StressEnvelope, Stresses};
 use crate::assemble::{Assembly, PartKind};
 
-/// Range of contact points for which a contact element loads the same cells of a body. Also contains the largest force
-/// of the element since its contact point entered this range.
+/// Range of contact points for which a contact element loads the same cells of a body, and the largest force of the
+/// element since its contact point entered this range. A cell is the part of the boundary that one point of the stress
+/// envelope represents.
 ///
 /// As long as the contact point stays in this range, only the largest force matters. In most steps, most contacts
 /// therefore need only a few comparisons.
