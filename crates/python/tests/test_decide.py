@@ -149,7 +149,7 @@ def test_a_calibration_has_the_numbers_of_the_command(
 
 
 def test_errors_of_a_test_are_raised() -> None:
-    with pytest.raises(barrelstack.Error, match='found "tilt"'):
+    with pytest.raises(barrelstack.Error, match='found only the column "tilt'):
         Calibration.friction({"tilt (deg)": [20.0, 21.0]})
     with pytest.raises(ValueError, match="leave both out"):
         Calibration.drop({"time (s)": [0.0, 0.5]}, mass="1 kg")
